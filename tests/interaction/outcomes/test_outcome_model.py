@@ -10,6 +10,7 @@ from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.outcome_kinds import KINDS, outcome_kind
+from lifelore.interaction.outcomes.spread import Spread
 
 SHAPE = (3, 2)
 
@@ -140,6 +141,7 @@ def test_table_rows_are_distributions_and_tell_the_types_apart(name):
 def test_observing_is_fitting_with_one_more_but_for_what_is_pooled(name):
     data = samples()
     model = KINDS[name].from_samples(data[..., :-1])
+    before = model.law()
     for type_, policy in np.ndindex(SHAPE):
         model.observe(type_, policy, data[type_, policy, -1])
     whole = KINDS[name].from_samples(data)
@@ -151,7 +153,15 @@ def test_observing_is_fitting_with_one_more_but_for_what_is_pooled(name):
         np.testing.assert_allclose(model.density(value), fresh.density(value), rtol=1e-12)
         np.testing.assert_allclose(model.log_density(1, value), fresh.log_density(1, value), rtol=1e-12)
         np.testing.assert_allclose(model.expected_excess(value), fresh.expected_excess(value), rtol=1e-10)
+        law, signal = model.law(), before.checked(value)
+        np.testing.assert_allclose(
+            law.log_likelihoods(1, signal), fresh.law(spread=model.spread).log_likelihoods(1, signal), rtol=1e-12
+        )
+        assert model.law() is law is not before or not law.learns
     np.testing.assert_allclose(model.deviation, fresh.deviation, rtol=1e-12)
+    if law.learns:
+        model.spread = Spread.known(0.5)
+        assert model.law().spread.values.tolist() == [0.5]
 
 
 @every_model

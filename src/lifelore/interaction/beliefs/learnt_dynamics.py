@@ -158,6 +158,9 @@ class LearntRows:
         # A row for each type: products of equal shapes are faster.
         self._rates, self._stay = rates.astype(dtype), np.repeat(stay[:, None], n_types, axis=1).astype(dtype)
         self._anew = self._rates[:, None] * self._prior + LEAST
+        # h / (1 - h) and h² / (1 - h) of each way.
+        self._drawn_after = (rates / np.maximum(stay, LEAST)).astype(dtype)
+        self._drawn_twice = (rates * rates / np.maximum(stay, LEAST)).astype(dtype)
         self._ones, self._ways = np.ones(n_types, dtype), np.ones((len(rates), len(rates)), dtype)
         self._categories: dict[Hashable, int] = {None: 0}
         for category in settings.categories:
@@ -202,10 +205,11 @@ class LearntRows:
     def changed_share(self, log_belief: Array, users: Any) -> Array:
         """P(the type was another | it is now this type) after a `step`, (..., n_types)."""
         joint = self._joint(users, log_belief)
-        weights = (joint @ self._ones)[..., None]
-        # Of the types drawn anew, those that were the same type before have not changed.
-        before = (joint - weights * self._anew) / np.maximum(self._stay, LEAST)
-        others = self._rates @ (weights - before) * self._prior
+        weights = joint @ self._ones
+        # Of the types drawn anew with probability h, those that were the same type before have not changed. The
+        # step had made joint = (1 - h) before + h weights G; the sum of h (weights - before) is taken in parts.
+        others = (weights @ self._rates)[..., None] + (weights @ self._drawn_twice)[..., None] * self._prior
+        others = (others - self._drawn_after @ joint) * self._prior
         share = others / np.maximum(np.exp(log_belief), LEAST)
         return np.minimum(np.maximum(share + self.moved[users] if self.tables else share, 0.0), 1.0)
 

@@ -16,5 +16,5 @@ def ndtr(z: Any) -> Any:
         from scipy.special import ndtr as of_scipy
 
         return of_scipy(z)
-    halves = [0.5 * erfc(x) for x in (-sqrt(0.5) * z).ravel().tolist()]
-    return np.array(halves).reshape(z.shape)[()]
+    found = np.fromiter(map(erfc, (-sqrt(0.5) * z).ravel().tolist()), np.float64, z.size)
+    return (0.5 * found).reshape(z.shape)[()]

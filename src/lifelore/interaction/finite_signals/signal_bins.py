@@ -84,7 +84,10 @@ def joined_table(probs: Array, n_bins: int) -> tuple[Ints, SignalTable]:
 
 def bin_probs(cumulative: Array) -> Array:
     """Probabilities of bins (..., n + 1) from distribution functions at their n cuts (..., n), at least 0."""
-    return np.maximum(np.diff(cumulative, axis=-1, prepend=0.0, append=1.0), 0.0)
+    found = np.ones((*cumulative.shape[:-1], cumulative.shape[-1] + 1))
+    found[..., :-1] = cumulative
+    found[..., 1:] -= cumulative
+    return np.maximum(found, 0.0, out=found)
 
 
 def joined_ends(bins: Array, n_bins: int) -> Ints:

@@ -46,7 +46,7 @@ LEAST_FREEDOM = 0.5
 
 
 class Posterior(NamedTuple):
-    """The law of pairs after what users have shown, (..., n_spreads or 1, n_types or 1) each.
+    """The law of pairs after what users have shown, (..., n_spreads or 1, n_types or 1) each, or a float.
 
     location : m
     doubt : 1/κ
@@ -54,10 +54,10 @@ class Posterior(NamedTuple):
     freedom : ν
     """
 
-    location: Array
-    doubt: Array
-    squares: Array
-    freedom: Array
+    location: Any
+    doubt: Any
+    squares: Any
+    freedom: Any
 
 
 class NormalLaw(Law):
@@ -90,10 +90,14 @@ class NormalLaw(Law):
         doubt, freedom = rarity[:, None] + spread.values[:, None], freedom[:, None]
         square, power = variance[:, None] * (1 + doubt), 0.5 * (freedom + 1)
         height = log_t_height(freedom) - np.log(self.unit)[:, None, None]
-        self._location, self._doubt, self._freedom, self._power = map(
-            self._stored, (mean[:, None], doubt, freedom, power)
-        )
-        self._weight, self._log_unit = self._stored(variance[:, None] * freedom), self._stored(np.log(self.unit))
+        before = (mean[:, None], doubt, variance[:, None] * freedom, freedom)
+        self._before = Posterior(*map(self._stored, before))
+        # Of each policy, with single numbers as floats: a single pair then takes a third of the time.
+        self._of_policy = [
+            Posterior(*(row.item() if row.size == 1 else row for row in rows))
+            for rows in zip(*self._before, strict=True)
+        ]
+        self._power, self._log_unit = self._stored(power), self._stored(np.log(self.unit))
         # Student's t of users who have shown nothing: log density = top − power log1p(gap² narrow).
         self._narrow = self._stored(1 / (square * freedom))
         self._top = self._stored(height - 0.5 * np.log(square))
@@ -116,7 +120,7 @@ class NormalLaw(Law):
         """Log densities of outcomes (...) given what `users` (...) have shown, (..., n_spreads, n_types)."""
         value = over_pairs(self._scaled(policies, signals))
         if shown is None:
-            gap = value - self._location[policies]
+            gap = value - of_users(self._before.location, policies)
             return self._top[policies] - self._power[policies] * np.log1p(gap * gap * self._narrow[policies])
         location, doubt, squares, freedom = self.posterior(policies, shown, users)
         height = self._stored(log_t_height(freedom)) - over_pairs(self._log_unit[policies])
@@ -125,27 +129,43 @@ class NormalLaw(Law):
         gap *= gap
         scale *= 1 + doubt
         gap /= scale
-        np.log1p(gap, out=gap)
+        gap = np.log1p(gap)
         gap *= 0.5 * (freedom + 1)
         scale /= freedom
-        found = np.log(scale, out=scale)
+        found = np.log(scale)
         found *= -0.5
         found += height
         found -= gap
-        return found
+        return np.atleast_2d(found)
 
     def posterior(self, policies: Numbers, shown: Array, users: Numbers) -> Posterior:
         """The law of the pairs of `policies` (...) given what `users` (...) have shown."""
-        n, mean, squares = _parts(self._shown_of(shown, users, policies)[..., None, None, :])
-        location, doubt = of_users(self._location, policies), self._doubt[policies]
-        grown, apart, freedom = 1 + n * doubt, mean - location, self._freedom[policies] + n
+        found = self._shown_of(shown, users, policies)
+        many = isinstance(policies, np.ndarray)
+        before = (rows.take(policies, axis=0) for rows in self._before) if many else self._of_policy[policies]
+        return self._after(found if found.ndim == 1 else found[..., None, None, :], *before)
+
+    def mean_pays(self, shown: Array, users: Numbers) -> tuple[Array, Array]:
+        """Expected mean outcome of each policy on `users` (...), and its variance, (..., n_policies) each.
+
+        Of a law with a single type and spread.
+        """
+        law = self._after(of_users(shown, users)[..., None, None, :], *self._before)
+        location, doubt, squares, freedom = (values[..., 0, 0] for values in law)
+        variance = doubt * squares * (variance_factor(freedom) / freedom)
+        return self.natural(location), self._stored(self.unit) ** 2 * variance
+
+    def _after(self, moments: Array, location: Any, doubt: Any, weight: Any, freedom: Any) -> Posterior:
+        """The law of pairs that have shown `moments` (..., 3), and had the other parameters before."""
+        n, mean, squares = _parts(moments)
+        grown, apart = 1 + n * doubt, mean - location
         doubt = doubt / grown
         around = n / grown * (apart * apart)
         around += squares
-        around += of_users(self._weight, policies)
+        around += weight
         moved = n * doubt * apart
         moved += location
-        return Posterior(moved, doubt, around, freedom)
+        return Posterior(moved, doubt, around, freedom + n)
 
     def _shown_of(self, shown: Array, users: Numbers, policies: Numbers) -> Array:
         """The statistics of pairs of a user and a policy, (..., 3)."""
@@ -165,15 +185,13 @@ class NormalLaw(Law):
         n, mean, squares = _parts(self._shown_of(shown, users, policies))
         before = self._scaled(policies, signals) - mean
         after = n + 1
-        # The mean and the squares first: of a single user `n` is a view.
-        shown[users, policies, 2] = squares + before * before * (n / after)
-        shown[users, policies, 1] = mean + before / after
         shown[users, policies, 0] = after
+        shown[users, policies, 1] = mean + before / after
+        shown[users, policies, 2] = squares + before * before * (n / after)
 
     def fade(self, shown: Array, users: Numbers, keep: ArrayLike) -> None:
         """Let what distinct `users` have shown count `keep` (...) of what it did."""
-        share = self._stored(keep)
-        shown[users] *= np.stack([share, np.ones_like(share), share], axis=-1)[..., None, :]
+        shown[users, :, self.amounts] *= self._stored(keep)[..., None, None]
 
     # ---- what rules read -----------------------------------------------------------------------------------
 
@@ -207,7 +225,7 @@ class NormalRows(NormalPrediction):
     def __init__(self, law: NormalLaw, shown: Array, users: Numbers, log_weights: Array) -> None:
         self._law, self._shown, self._shape = law, shown, np.shape(users)
         self._users = np.atleast_1d(users)
-        self._weights = np.exp(log_weights).astype(law.dtype).reshape(len(self._users), -1)
+        self._weights = np.exp(log_weights).astype(law.dtype, copy=False).reshape(len(self._users), -1)
 
     @property
     def n_types(self) -> int:
@@ -244,7 +262,8 @@ class NormalRows(NormalPrediction):
         untried = of_users(law.natural_mean_of_types, types)
         n, mean, _ = _parts(of_users(self._shown, self._users))
         # (n_types, n_spreads, n_policies), or (1, ...) where types are alike.
-        doubt = law._doubt.T if law._doubt.shape[2] == 1 else law._doubt.T[types]
+        doubt = law._before.doubt.T
+        doubt = doubt if len(doubt) == 1 else doubt[types]
         pull = n[:, None] * doubt
         pull /= 1 + pull
         pull = pull[:, 0] if pull.shape[1] == 1 else (self._weights[:, :, None] * pull).sum(axis=1)
@@ -273,36 +292,43 @@ class NormalRows(NormalPrediction):
     def table(self, n_bins: int) -> SignalTable:
         """The next outcome in bins that tell the types apart; the bins are those of users who showed nothing."""
         cuts, table = self._law.bins(n_bins)
-        deviation = np.sqrt(sum(self._tried_variances))
-        probs = normal_probs(self._tried_mean, deviation, cuts[self._at[1]][:, None])
+        deviation = np.sqrt(self._tried_variances[0] + self._tried_variances[1])
+        probs = normal_probs(self._tried_mean, deviation, cuts.take(self._at[1], axis=0)[:, None])
         return table.replaced(self._shape, self._at, probs)
 
     @cached_property
     def _at(self) -> tuple[Array, Array]:
         """Row and policy, (m,) each, of the pairs of a user and a policy that the user has shown an outcome of."""
-        rows, policies = np.nonzero(self._shown[self._users, :, 0])
+        rows, policies = self._shown[self._users, :, 0].nonzero()
         return rows, policies
 
     @cached_property
     def _tried(self) -> Posterior:
         rows, policies = self._at
-        return self._law.posterior(policies, self._shown, self._users[rows])
+        return self._law.posterior(policies, self._shown, self._users.take(rows))
 
     @cached_property
     def _tried_mean(self) -> Array:
-        rows, policies = self._at
-        return self._law.natural((self._weights[rows][:, :, None] * self._tried.location).sum(axis=1), policies)
+        return self._law.natural(self._tried_location, self._at[1])
+
+    @cached_property
+    def _tried_location(self) -> Array:
+        return self._mixed(self._tried.location)
 
     @cached_property
     def _tried_variances(self) -> tuple[Array, Array]:
         """Variance of the mean outcome of tried pairs, and of outcomes around it, (m, n_types) each."""
-        rows, policies = self._at
         location, doubt, squares, freedom = self._tried
-        weights, square = self._weights[rows][:, :, None], self._law.unit[policies][:, None] ** 2
-        gap = location - (weights * location).sum(axis=1, keepdims=True)
-        noise = variance_factor(freedom) * squares / freedom
-        unknown = (weights * (doubt * noise + gap * gap)).sum(axis=1)
-        return square * unknown, square * (weights * noise).sum(axis=1)
+        square = self._law.unit.take(self._at[1])[:, None] ** 2
+        gap = location - self._tried_location[:, None]
+        noise = variance_factor(freedom) / freedom * squares
+        return square * self._mixed(doubt * noise + gap * gap), square * self._mixed(noise)
+
+    def _mixed(self, values: Array) -> Array:
+        """Expectation over the spreads of numbers of tried pairs, (m, n_spreads or 1, n_types) to (m, n_types)."""
+        if values.shape[1] == 1:
+            return values[:, 0]
+        return np.matmul(self._weights.take(self._at[0], axis=0)[:, None], values)[:, 0]
 
     def _rows(self, untried: Array, tried: Array) -> Array:
         return filled(self._shape, self._at, untried, tried, self.n_policies)
@@ -313,8 +339,10 @@ def variance_factor(freedom: Array) -> Array:
     return 1 + 2 / np.maximum(freedom - 2, LEAST_FREEDOM)
 
 
-def log_t_height(freedom: Array) -> Array:
+def log_t_height(freedom: Any) -> Any:
     """Log density of Student's t at its location, scale 1, of degrees of freedom (...), to 1e-14."""
+    if isinstance(freedom, float):
+        return _stored_height(freedom)
     if freedom.size > FEW:
         return _height(freedom.astype(np.float64, copy=False))
     return np.array([_stored_height(value) for value in freedom.ravel().tolist()]).reshape(freedom.shape)
@@ -342,9 +370,9 @@ def _alike(of_pairs: Array) -> Array:
     return of_pairs[:, :1] if (of_pairs == of_pairs[:, :1]).all() else of_pairs
 
 
-def _parts(moments: Array) -> tuple[Array, Array, Array]:
-    """Number, mean and sum of squares of (..., 3)."""
-    return moments[..., 0], moments[..., 1], moments[..., 2]
+def _parts(moments: Array) -> tuple[Any, Any, Any]:
+    """Number, mean and sum of squares of (..., 3); floats of a single pair."""
+    return tuple(moments.tolist()) if moments.ndim == 1 else (moments[..., 0], moments[..., 1], moments[..., 2])
 
 
 def spread_of_moments(moments: OutcomeMoments) -> Spread:

@@ -4,6 +4,7 @@ Thesis: §4.3.4, Def. 4.3.4.
 """
 
 from collections.abc import Callable, Mapping
+from functools import cached_property
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -56,6 +57,7 @@ class OutcomeModel(Prediction):
     @spread.setter
     def spread(self, spread: Spread) -> None:
         self._spread = spread
+        self._laws.clear()
 
     def law(self, models: Models = "uncertain", *, spread: Spread | None = None, dtype: str = "f8") -> Any:
         """The law of outcomes given what users have shown; a fixed law where all is exact, or taken for the truth.
@@ -66,8 +68,20 @@ class OutcomeModel(Prediction):
             By default the model's own.
         dtype : {"f8", "f4"}
         """
-        learns = None if models == "plug-in" else self._uncertain_law(spread or self.spread, dtype)
+        if models == "plug-in":
+            learns = None
+        elif spread is not None:
+            learns = self._uncertain_law(spread, dtype)
+        else:
+            if dtype not in self._laws:
+                self._laws[dtype] = self._uncertain_law(self.spread, dtype)
+            learns = self._laws[dtype]
         return learns or FixedLaw(self, self.n_types, self.log_densities, finite_outcomes)
+
+    @cached_property
+    def _laws(self) -> dict[str, Any]:
+        """Laws with the model's own spread by dtype, shared by all tasks until the model learns in place."""
+        return {}
 
     def log_density(self, policy: int, value: float) -> Array:
         """Log density of `value` per type, (n_types,); minus infinity where it is impossible.
@@ -100,6 +114,7 @@ class OutcomeModel(Prediction):
         check_outcome(policy, value, self.n_policies)
         self._count(type_, policy, value)
         self._prepare()
+        self._laws.clear()
 
     def absorb(self, type_: int, state: Mapping[str, Any]) -> None:
         """Learn from all outcomes of a task whose type has become known, in place.
@@ -109,6 +124,7 @@ class OutcomeModel(Prediction):
         check_known("type", type_, self.n_types)
         self._count_all(type_, state)
         self._prepare()
+        self._laws.clear()
 
     def with_type(self, samples: ArrayLike, gaps: bool = False) -> Self:
         """A new model with an additional type, from `samples` (n_policies, n), NaN where missing.

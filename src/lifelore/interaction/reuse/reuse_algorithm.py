@@ -267,10 +267,10 @@ class ReuseAlgorithm:
         if law.learns:
             explained = log_evidence > -np.inf
             if changed is not None:
-                changes = np.where(explained, (np.exp(after) * changed).sum(axis=-1), 0.0)
+                keep = 1 - np.minimum(np.vecdot(np.exp(after), changed), 1.0) * explained
                 for model in self._models.values():
-                    model.fade(users, 1 - np.minimum(changes, 1.0))
-            if explained.any():
+                    model.fade(users, keep)
+            if _any(explained):
                 self.signals.learn(*_explained(explained, users, policies, signals, gain))
         if self.unknown is not None:
             self.unknown.weigh(users, policies, raw, log_evidence)
@@ -381,7 +381,7 @@ class ReuseAlgorithm:
     def _changed(self, users: Numbers, log_belief: Array) -> Array | None:
         """P(the type has just changed to this), (..., n_types); None where it cannot have."""
         begun = self._begun[users]
-        share = self.changes.changed_share(log_belief, users) if begun.any() else None
+        share = self.changes.changed_share(log_belief, users) if _any(begun) else None
         return None if share is None else share * begun[..., None]
 
     def _of_unknown(
@@ -394,20 +394,24 @@ class ReuseAlgorithm:
         if available is not None:
             bounds = np.where(available, bounds, -np.inf)
             means = np.where(np.expand_dims(available, -2), means, -np.inf)
-        best = (belief * means.max(axis=-1)).sum(axis=-1)
-        tried = np.asarray(self.unknown.tried(users, bounds, best))
+        tried = np.asarray(self.unknown.tried(users, bounds, np.vecdot(belief, means.max(axis=-1))))
         return (tried, bounds[tried]) if tried.any() else None
 
     def _learn_outcomes(self, users: Numbers, policies: Numbers, outcomes: Any, log_belief: Array) -> None:
         found = self.outcomes.evidence(users, policies, outcomes, log_belief, None)
         explained = (found.log_likelihood > -np.inf).any(axis=-1)
-        if explained.any():
+        if _any(explained):
             self.outcomes.learn(*_explained(explained, users, policies, outcomes, found.gain))
+
+
+def _any(flags: Any) -> bool:
+    """Whether a flag of users (...) is set; of a single user without NumPy, whose call takes a microsecond."""
+    return bool(flags if flags.ndim == 0 else flags.any())
 
 
 def _explained(explained: Any, *of_users: Any) -> tuple[Any, ...]:
     """The parts of what comes for each user that `explained` (...) marks."""
-    if explained.all():
+    if explained.ndim == 0 or explained.all():
         return of_users
     rows = np.flatnonzero(explained)
     return tuple(

@@ -75,8 +75,9 @@ class UnknownUsers(UserModel):
 
     def bounds(self, users: Numbers) -> Array:
         """m + 2 s of each policy's mean pay on `users` (...), (..., n_policies)."""
-        pay = self.prediction(users)
-        return (pay.mean + DEVIATIONS * np.sqrt(pay.mean_variance))[..., 0, :]
+        law: Any = self.law
+        mean, variance = law.mean_pays(self.shown, users)
+        return mean + DEVIATIONS * np.sqrt(variance)
 
     def tried(self, users: Numbers, bounds: Array, known: Array) -> Any:
         """Whether policies are tried on `users` (...), (...) bool.

@@ -14,12 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.law import Law, Numbers
+from lifelore.interaction.outcomes.law import Law, Numbers, of_users
 
 Array = NDArray[Any]
 
-LEAST = 1e-37
-"""In place of 0 below a line."""
 SLACK = 1e-5
 """Rounding error of probabilities that sum to 1."""
 
@@ -78,18 +76,16 @@ class UserModel:
             stayed, gain = found, None
         else:
             gain = np.logaddexp.reduce(found + log_belief[..., None, :], axis=-1)
-            stayed = found + self.log_weights[users][..., None].astype(found.dtype, copy=False)
+            stayed = found + of_users(self.log_weights, users)[..., None].astype(found.dtype, copy=False)
         stayed = _over_spreads(stayed)
         if changed is None:
             return Evidence(stayed, None, gain)
         first = law.log_likelihoods(policies, signals) + self._log_first[:, None].astype(found.dtype, copy=False)
-        anew = _over_spreads(first)
-        top = np.maximum(stayed, np.where(changed > 0, anew, -np.inf))
-        top = np.where(top > -np.inf, top, 0.0)
-        new = changed * np.exp(anew - top)
-        whole = (1 - changed) * np.exp(stayed - top) + new
-        with np.errstate(divide="ignore"):
-            return Evidence(np.log(whole) + top, new / np.maximum(whole, LEAST), gain)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            anew = _over_spreads(first) + np.log(changed)
+            whole = np.logaddexp(np.log1p(-changed) + stayed, anew)
+            # Not a number where neither explains the signal.
+            return Evidence(whole, np.fmax(np.exp(anew - whole), 0.0), gain)
 
     def prediction(self, users: Numbers) -> Any:
         """What rules read of the next outcome or signal of `users`, see `Law`."""
@@ -105,7 +101,7 @@ class UserModel:
             return
         share = np.asarray(keep)[..., None]
         with np.errstate(divide="ignore"):
-            weights = share * np.exp(self.log_weights[users]) + (1 - share) * np.exp(self._log_first)
+            weights = share * np.exp(self.log_weights[users]) + (1 - share) * self.law.spread.weights
             self.log_weights[users] = np.log(weights)
 
     def learn(self, users: Numbers, policies: Numbers, signals: Any, gain: Array | None) -> None:

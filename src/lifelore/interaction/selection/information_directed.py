@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from lifelore.interaction.outcomes.prediction import weighted
 from lifelore.interaction.selection.information import mutual_information
 from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary
 from lifelore.interaction.selection.support import MASS, check_mass
@@ -57,8 +58,7 @@ class InformationDirected(Deterministic):
 
     def scores(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
         """Minus the root of the information ratio, (P,) or (k, P)."""
-        outcomes = library.performance
-        best = (belief * outcomes.mean.max(axis=-1)).sum(axis=-1)[..., None]
-        lost = np.maximum(best - outcomes.expected(belief), 0.0)
+        mean = library.performance.mean
+        lost = weighted(belief, mean.max(axis=-1, keepdims=True) - mean)
         information = mutual_information(belief, library.table(self.n_bins), self.mass)
         return -lost / np.sqrt(np.maximum(information, LEAST_INFORMATION))

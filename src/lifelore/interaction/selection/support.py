@@ -25,8 +25,9 @@ def truncated(belief: Array, mass: float) -> Array:
     rising.sort(axis=-1)
     held = np.add.accumulate(rising, axis=-1)
     # From below: the types left out may not exceed 1 - mass, and small numbers are summed first.
-    used = np.where(held > (1.0 - mass) * held[..., -1:], rising, np.inf)
-    kept = np.where(belief >= np.minimum.reduce(used, axis=-1, keepdims=True), belief, 0.0)
+    first = (held > (1.0 - mass) * held[..., -1:]).argmax(axis=-1)
+    least = rising[first] if belief.ndim == 1 else np.take_along_axis(rising, first[..., None], axis=-1)
+    kept = belief * (belief >= least)
     return kept / np.add.reduce(kept, axis=-1, keepdims=True)
 
 
