@@ -1,6 +1,7 @@
 """`lifelore perceive` as a person meets it: tables, one JSON document, and one line for whatever is wrong."""
 
 import json
+import shutil
 import signal
 import subprocess
 import sys
@@ -350,6 +351,24 @@ def test_ctrl_c_among_several_keeps_what_is_finished(start, answer, three):
     assert "stopping: " in said.err
     assert len(said.document["scenes"]) < 2000
     assert 1 <= len(said.document["failed"]) <= 3
+
+
+def test_a_folder_is_watched_until_ctrl_c(start, answer, three, tmp_path):
+    folder = tmp_path / "in"
+    folder.mkdir()
+    shutil.copy(three[0], folder / "old.npz")
+    child = start("perceive", "--watch", folder, "--up", "z", "--json")
+    assert child.stderr.readline() == f"lifelore: watching {folder} for new clouds; Ctrl-C stops\n"
+    shutil.copy(three[2], folder / "new.npz")
+    entry = json.loads(child.stdout.readline())
+    assert entry["source"] == str(folder / "new.npz")
+    assert [thing["id"] for thing in entry["objects"]] == [2]
+    shutil.copy(three[0], folder / "old.npz")
+    assert json.loads(child.stdout.readline())["source"] == str(folder / "old.npz")
+    child.send_signal(signal.SIGINT)
+    said = answer(child)
+    assert (said.status, said.out) == (130, "")
+    assert said.err.startswith("stopping: ")
 
 
 @pytest.mark.parametrize(
