@@ -103,27 +103,29 @@ class TableLearner:
     def act(self, state: Hashable, context: int, explore: bool = True) -> int:
         """The ε-greedy action (Alg. 2, line 5), or the greedy one."""
         epsilon = self._epsilons[min(len(self.returns.returns), len(self._epsilons) - 1)] if explore else 0.0
-        explored, ties = self._even
-        if self.prior is not None and self._is_guided(state, context):
+        tries, (explored, ties) = self._visit(state, context), self._even
+        if self.prior is not None and self._is_guided(state, tries):
             if context not in self._rows:
                 self._rows[context] = self._rows_of(self.prior, context)
             explored, ties = self._rows[context]
-        self.visited[state, context] = self._tries(state, context) + 1
         return epsilon_greedy(self.q[state], 0, explored, ties, 0, epsilon, self.random)
 
-    def _is_guided(self, state: Hashable, context: int) -> bool:
+    def _is_guided(self, state: Hashable, tries: float) -> bool:
         """Whether the prior has the say now: always, or ever more rarely where the values of actions differ."""
         if not self.cautious:
             return True
         values = self.q[state][0]
-        tries = self._tries(state, context) if values.min() < values.max() else 0.0
-        trust = TRUST * self.n_actions / (self.n_actions + tries)
+        weight = tries if values.min() < values.max() else 0.0
+        trust = TRUST * self.n_actions / (self.n_actions + weight)
         return self._guided and self.generator.random() < trust
 
-    def _tries(self, state: Hashable, context: int) -> float:
-        """How often tasks of the type have acted in a state."""
-        known = self.visited.get((state, context))
-        return sum(self._met(state, action) for action in range(self.n_actions)) if known is None else known
+    def _visit(self, state: Hashable, context: int) -> float:
+        """Count a visit of a state; how often tasks of the type have acted there before."""
+        tries = self.visited.get((state, context))
+        if tries is None:
+            tries = sum(self._met(state, action) for action in range(self.n_actions))
+        self.visited[state, context] = tries + 1
+        return tries
 
     def _rows_of(self, prior: ActionPrior, context: int) -> tuple[Array, Array]:
         """Cumulative exploration probabilities and tie weights, both (1, n_actions)."""
@@ -153,7 +155,7 @@ class TableLearner:
     def take_over(self, steps: list[Step]) -> None:
         """Learn steps that another player has made."""
         for step in reversed(steps):
-            self.visited[step.state, step.context] = self._tries(step.state, step.context) + 1
+            self._visit(step.state, step.context)
             self._learn(step)
         self.remembered += steps
 

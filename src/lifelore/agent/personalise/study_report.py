@@ -191,7 +191,7 @@ def _estimate(values: Sequence[float] | Array) -> dict[str, Any] | None:
         return mean_estimate(values).to_dict()
     mean, error = float(np.mean(values)), float(np.std(values, ddof=1)) / len(values) ** 0.5
     low, high = map(float, t_interval(mean, error, len(values) - 1))
-    return Estimate(mean, float(np.median(values)), (low, high) if error > 0 else None, len(values)).to_dict()
+    return Estimate(mean, float(np.median(values)), (low, high), len(values)).to_dict()
 
 
 def _by_time(totals: StudyTotals, by: str, *, since: int, strangers: bool) -> list[dict[str, Any]]:
