@@ -177,6 +177,7 @@ def test_a_name_at_two_points_is_a_question(tmp_path):
         assert np.allclose(NamedPlaces.of(place_on(OFFICE, memory)).points(memory)["dock"], DOCK, atol=1e-6)
 
 
+@pytest.mark.skipif("LIFELORE_DATA" not in os.environ, reason="LIFELORE_DATA is not set")
 def test_the_real_map_turned_and_cropped(tmp_path):
     willow = read_occupancy_map(Path(os.environ["LIFELORE_DATA"]) / "maps" / "willow-full.yaml")
     part = cropped(turned(willow, 3.0), 0.25)
