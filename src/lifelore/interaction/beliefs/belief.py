@@ -113,14 +113,16 @@ def log_sum(terms: Array) -> Array:
     if terms.ndim == 1:
         # A single row in one call of NumPy, which is slow for many rows.
         return np.logaddexp.reduce(terms)
-    ones = np.ones(terms.shape[-1], terms.dtype)  # Products with ones: sums over short axes are slow.
+    # Products with ones: sums over short axes are slow. Not with `@`: for a float32 matrix times a vector OpenBLAS
+    # reads unset numbers on AVX-512, and warns of an invalid value where there is none.
+    ones = np.ones(terms.shape[-1], terms.dtype)
     with np.errstate(divide="ignore", over="ignore"):
-        found = np.log(np.exp(terms) @ ones)
+        found = np.log(np.vecdot(np.exp(terms), ones))
         if np.abs(found).max(initial=0.0) < NEAR:
             return found
         top = largest(terms)
         top = np.where(top > -np.inf, top, 0.0)
-        return np.log(np.exp(terms - top) @ ones) + top[..., 0]
+        return np.log(np.vecdot(np.exp(terms - top), ones)) + top[..., 0]
 
 
 def largest(rows: Array) -> Array:

@@ -183,8 +183,8 @@ class LearntRows:
             How the episode ended, such as ``"won"``.
         """
         joint = self._joint(users, log_belief)
-        # Products with ones: sums over short axes are slow.
-        weights = joint.dot(self._ones)
+        # Products with ones: sums over short axes are slow; not with `@`, see `log_sum`.
+        weights = np.vecdot(joint, self._ones)
         after = weights[..., None] * self._anew
         after += joint * self._stay
         moved: Any = 0.0
@@ -205,10 +205,11 @@ class LearntRows:
     def changed_share(self, log_belief: Array, users: Any) -> Array:
         """P(the type was another | it is now this type) after a `step`, (..., n_types)."""
         joint = self._joint(users, log_belief)
-        weights = joint @ self._ones
+        weights = np.vecdot(joint, self._ones)
         # Of the types drawn anew with probability h, those that were the same type before have not changed. The
         # step had made joint = (1 - h) before + h weights G; the sum of h (weights - before) is taken in parts.
-        others = (weights @ self._rates)[..., None] + (weights @ self._drawn_twice)[..., None] * self._prior
+        anew, twice = np.vecdot(weights, self._rates), np.vecdot(weights, self._drawn_twice)
+        others = anew[..., None] + twice[..., None] * self._prior
         others = (others - self._drawn_after @ joint) * self._prior
         share = others / np.maximum(np.exp(log_belief), LEAST)
         return np.minimum(np.maximum(share + self.moved[users] if self.tables else share, 0.0), 1.0)
@@ -220,7 +221,7 @@ class LearntRows:
     def learnt(self, user: int, log_belief: Array) -> LearntDynamics:
         """Settings that start from what a user has shown."""
         learnt = {name: table.counts[user].copy() for name, table in self.tables.items()}
-        weights = self._joint(user, log_belief) @ self._ones
+        weights = np.vecdot(self._joint(user, log_belief), self._ones)
         return LearntDynamics(self.settings.by, {"weights": weights, **learnt}, list(self._categories)[1:])
 
     # ---- rows ----------------------------------------------------------------------------------------------
