@@ -12,7 +12,7 @@ from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.scene_example import draw_examples, scene_row
 from reproduction.chapter2.scenes.scene_lots import example_rows, lots, numbers_of
 from reproduction.chapter2.scenes.skeletons import perceived, reading
-from reproduction.chapter2.scenes.substructure import Reading, find_substructure
+from reproduction.chapter2.scenes.substructure import Reading, is_substructure
 from reproduction.engine.estimates import exact_share
 
 LOT = 10
@@ -48,8 +48,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 def found_in(part: Scene, whole: Scene) -> dict[str, bool]:
     """Whether a scene's skeleton is found in another's, by reading."""
     return {
-        name: find_substructure(*(reading(scene, ground=ground) for scene in (part, whole)), networks=networks)
-        is not None
+        name: is_substructure(*(reading(scene, ground=ground) for scene in (part, whole)), networks=networks)
         for name, (ground, networks) in READINGS.items()
     }
 

@@ -13,6 +13,7 @@ Contact points between unrelated neighbours (*none*) count like others; `Scene.w
 them out. Thesis: §2.5, Fig. 2.10.
 """
 
+from collections.abc import Iterator
 from typing import Literal
 
 import networkx as nx
@@ -27,8 +28,10 @@ Roles = dict[tuple[int, ...], tuple[int, ...]]
 """Objects ``(object,)`` and contact points ``(object, node)`` of a scene, and those of another in their roles."""
 
 
-def find_substructure(part: Scene, whole: Scene, *, networks: Reading = "edges") -> Roles | None:
-    """A place in `whole` where the skeleton of `part` is found, the first in a fixed order of search; else None.
+def substructures(part: Scene, whole: Scene, *, networks: Reading = "edges") -> Iterator[Roles]:
+    """Every place in `whole` where the skeleton of `part` is found; their order means nothing.
+
+    A symmetric scene lies in itself in several ways, all equally good.
 
     Parameters
     ----------
@@ -38,8 +41,13 @@ def find_substructure(part: Scene, whole: Scene, *, networks: Reading = "edges")
     """
     small, large = (skeleton(scene, with_edges=networks == "edges") for scene in (part, whole))
     same_kind = categorical_node_match("kind", None), categorical_edge_match("kind", None)
-    found = next(GraphMatcher(large, small, *same_kind).subgraph_monomorphisms_iter(), None)
-    return None if found is None else {own: other for other, own in found.items()}
+    for found in GraphMatcher(large, small, *same_kind).subgraph_monomorphisms_iter():
+        yield {own: other for other, own in found.items()}
+
+
+def is_substructure(part: Scene, whole: Scene, *, networks: Reading = "edges") -> bool:
+    """Whether the skeleton of `part` is found in `whole`; parameters as for `substructures`."""
+    return next(substructures(part, whole, networks=networks), None) is not None
 
 
 def skeleton(scene: Scene, *, with_edges: bool = True) -> nx.Graph:

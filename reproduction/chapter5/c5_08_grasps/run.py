@@ -1,7 +1,8 @@
 """C5.8: grasps sought with few tries in pairs of settled scenes of one arrangement.
 
 A try is a pose of the gripper chosen from the perceived scene alone; the simulator's true objects tell whether it
-is reached and holds. Labels of the clouds are given. Thesis: §2.1, §2.4.2, §2.5.
+is reached and holds. Labels of the clouds are given. Symmetric scenes correspond in several ways that are equally
+good; the success of a carried grasp is its mean over all of them. Thesis: §2.1, §2.4.2, §2.5.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -18,7 +19,7 @@ from lifelore.perception.topology.grasp_seeds import grasp_seeds
 from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.chapter2.scenes.skeletons import perceived, reading
-from reproduction.chapter2.scenes.substructure import Roles, find_substructure, skeleton
+from reproduction.chapter2.scenes.substructure import Roles, skeleton, substructures
 from reproduction.chapter5.c5_08_grasps.parallel_gripper import Grasp, GraspedTabletop
 from reproduction.chapter5.c5_08_grasps.searches import anywhere, around, carried, from_above, from_seeds
 from reproduction.chapter5.role_scenes import POOLS, role_scene
@@ -43,20 +44,19 @@ def cells(settings: Mapping) -> list[dict]:
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """Tries until success, by object and search; None where no try of `TRIES` succeeds."""
+    """Whether one of `TRIES` tries succeeds, by object and search."""
     name, objects = cell["arrangement"], []
     for number in numbers_of(cell, LOT, settings["pairs"]):
         pair = [drawn_scene(name, pool, seed, number) for pool in POOLS]
         scenes = [perceived(scene.cloud) for scene in pair]
         networks = [reading(scene, ground=True) for scene in scenes]
-        same = equal_topology(*networks)
+        same = equal_topologies(*networks)
         worlds = [GraspedTabletop(scene.shapes, scene.poses) for scene in pair]
         for label in scenes[1].objects:
-            rng = stream(seed, "C5.8", name, number, label)
-            row = {"scene": f"{name} {number}", **searched(worlds[1], networks[1], label, rng)}
-            if same is not None:
-                row |= transferred(worlds, networks, same, label, rng)
-            objects.append(row)
+            names = (seed, "C5.8", name, number, label)
+            found = searched(worlds[1], networks[1], label, stream(*names))
+            found |= transferred(worlds, networks, same, label, names)
+            objects.append({"scene": f"{name} {number}", **found})
     return {"objects": objects}
 
 
@@ -68,51 +68,60 @@ def drawn_scene(name: str, pool: str, seed: int, number: int) -> TabletopScene:
     return role_scene(name, pool, f"C5.8 {pool} {name}", seed, number)
 
 
-def equal_topology(first: Scene, second: Scene) -> Roles | None:
-    """The correspondence of two scenes whose skeletons have the same contact points, else None."""
+def equal_topologies(first: Scene, second: Scene) -> list[Roles]:
+    """Every correspondence of two scenes whose skeletons have the same contact points; empty if they have not."""
     if len(skeleton(first)) != len(skeleton(second)):
-        return None
-    return find_substructure(first, second, networks="connected")
+        return []
+    return list(substructures(first, second, networks="connected"))
 
 
 def searched(world: GraspedTabletop, scene: Scene, label: int, rng: np.random.Generator) -> dict:
-    """Tries from seeds, anywhere and from above; `seeds` counts the seeds of the object."""
+    """Success from seeds, anywhere and from above; `seeds` counts the seeds of the object."""
     seeds = [seed for seed in grasp_seeds(scene) if seed.object_id == label]
     points = scene.cloud.of(label)
     return {
         "seeds": len(seeds),
-        "seeded": first_success(world, label, from_seeds(seeds, rng)),
-        "anywhere": first_success(world, label, anywhere(points, rng)),
-        "above": first_success(world, label, from_above(points, rng)),
+        "seeded": is_grasped(world, label, from_seeds(seeds, rng)),
+        "anywhere": is_grasped(world, label, anywhere(points, rng)),
+        "above": is_grasped(world, label, from_above(points, rng)),
     }
 
 
 def transferred(
-    worlds: list[GraspedTabletop], scenes: list[Scene], same: Roles, label: int, rng: np.random.Generator
+    worlds: list[GraspedTabletop], scenes: list[Scene], same: list[Roles], label: int, names: tuple
 ) -> dict:
-    """Tries of a grasp that worked on the corresponding object of the first scene, carried over."""
-    source = next((own[0] for own, other in same.items() if other == (label,)), None)
-    if source is None:
+    """Success of grasps that worked on the counterpart in the first scene, carried over by each correspondence.
+
+    `names` name the random streams. Empty where no grasp can be carried.
+    """
+    successes = []
+    for roles in same:
+        source = next((own[0] for own, other in roles.items() if other == (label,)), None)
+        learnt = None if source is None else learnt_grasp(worlds[0], scenes[0], source, stream(*names, source))
+        found = carried(learnt, scenes[0], source, scenes[1], label, roles) if source and learnt else []
+        if found:
+            successes.append(is_grasped(worlds[1], label, around(found, stream(*names, "carried"))))
+    if not successes:
         return {}
-    points = [scenes[0].cloud.of(source), scenes[1].cloud.of(label)]
-    tried = zip(anywhere(points[0], rng), from_above(points[0], rng), strict=True)
-    grasps = islice((grasp for both in tried for grasp in both), LEARNT_TRIES)
-    learnt = next((grasp for grasp in grasps if worlds[0].succeeds(grasp, source - FIRST_OBJECT)), None)
-    found = [] if learnt is None else carried(learnt, scenes[0], source, scenes[1], label, same)
-    if learnt is None or not found:
-        return {}
+    points, rng = scenes[1].cloud.of(label), stream(*names, "not carried")
     return {
-        "carried": first_success(worlds[1], label, around(found, rng)),
-        "not carried": first_success(worlds[1], label, anywhere(points[1], rng)),
-        "above, not carried": first_success(worlds[1], label, from_above(points[1], rng)),
+        "carried": float(np.mean(successes)),
+        "not carried": is_grasped(worlds[1], label, anywhere(points, rng)),
+        "above, not carried": is_grasped(worlds[1], label, from_above(points, rng)),
     }
 
 
-def first_success(world: GraspedTabletop, label: int, grasps: Iterable[Grasp]) -> int | None:
-    """Number of the first try that succeeds, from 1; None if none of `TRIES` does."""
-    return next(
-        (n for n, g in enumerate(islice(grasps, TRIES), start=1) if world.succeeds(g, label - FIRST_OBJECT)), None
-    )
+def learnt_grasp(world: GraspedTabletop, scene: Scene, label: int, rng: np.random.Generator) -> Grasp | None:
+    """The first grasp of an object that succeeds, sought anywhere and from above in turn; else None."""
+    points = scene.cloud.of(label)
+    tried = zip(anywhere(points, rng), from_above(points, rng), strict=True)
+    grasps = islice((grasp for both in tried for grasp in both), LEARNT_TRIES)
+    return next((grasp for grasp in grasps if world.succeeds(grasp, label - FIRST_OBJECT)), None)
+
+
+def is_grasped(world: GraspedTabletop, label: int, grasps: Iterable[Grasp]) -> bool:
+    """Whether one of the first `TRIES` grasps succeeds."""
+    return any(world.succeeds(grasp, label - FIRST_OBJECT) for grasp in islice(grasps, TRIES))
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
@@ -135,13 +144,13 @@ def objects_carried(results: Sequence[Mapping]) -> list[Mapping]:
 
 
 def share(rows: Sequence[Mapping], name: str) -> Estimate:
-    """Share of objects that a search grasps."""
-    return _mean([float(row[name] is not None) for row in rows], rows)
+    """Share of objects that a search grasps, the mean over correspondences where there are several."""
+    return _mean([row[name] for row in rows], rows)
 
 
 def difference(rows: Sequence[Mapping], name: str, other: str) -> Estimate:
     """Share of one search less that of another on the same objects."""
-    return _mean([float(row[name] is not None) - float(row[other] is not None) for row in rows], rows)
+    return _mean([float(row[name]) - row[other] for row in rows], rows)
 
 
 def _mean(values: Sequence[float], rows: Sequence[Mapping]) -> Estimate:

@@ -70,7 +70,7 @@ def carried(grasp: Grasp, first: Scene, label: int, second: Scene, other: int, r
     points of the same kind may be exchanged, so the grasp turned by 180° about the third axis comes second. Empty
     if the contact points lie above one another.
     """
-    own = [role for role in roles if len(role) == 2 and role[0] == label]
+    own = sorted(role for role in roles if len(role) == 2 and role[0] == label)
     before = np.array([first.position(*node) for node in own]).reshape(-1, 3)
     after = np.array([second.position(*roles[node]) for node in own]).reshape(-1, 3)
     if len(own) < 2 or any(roles[node][0] != other for node in own):
