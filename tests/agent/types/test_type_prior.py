@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.agent.types.type_prior import LIBRARY_TASKS, TypePrior
+from lifelore.agent.types.type_prior import LIBRARY_TASKS, SHARED, TypePrior
 from lifelore.core.errors import InputError
 
 PRIOR = [0.5, 0.3, 0.2]
@@ -21,11 +21,11 @@ def learnt(lived, **how) -> TypePrior:
 
 
 def test_one_date_by_hand():
-    """No date has been predicted yet, so the four weights of all contexts count alike."""
+    """No date has been predicted yet, so all weights of all contexts count alike."""
     assert TypePrior(PRIOR).prior(4, date=3) == pytest.approx(PRIOR)
     made = learnt([(7, [1.0, 0, 0], 0), (7, [0, 1.0, 0], 0), (8, [0, 1.0, 0], 0)])
     anywhere = (np.array([1.0, 2.0, 0.0]) + LIBRARY_TASKS * np.array(PRIOR)) / (3 + LIBRARY_TASKS)
-    own = [(np.array([1.0, 1.0, 0.0]) + k * anywhere) / (2 + k) for k in (2.0, 8.0, 32.0)]
+    own = [(np.array([1.0, 1.0, 0.0]) + k * anywhere) / (2 + k) for k in SHARED[:-1]]
     assert made.prior(7, date=0) == pytest.approx(np.mean([*own, anywhere], axis=0))
 
 
