@@ -96,7 +96,9 @@ class Knowledge:
     def type_prior(self) -> TypePrior:
         """Which of `known_types` to expect, by context and date."""
         known = self.known_types().types
-        return TypePrior.of_types([[_by_when(self.types[name].sightings) for name in one.members] for one in known])
+        return TypePrior.of_types(
+            [[_by_when(self.types[name].sightings) for name in one.members] for one in known]
+        )
 
     # ---- learning ----------------------------------------------------------------------------------
 

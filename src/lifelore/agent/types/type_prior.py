@@ -23,8 +23,8 @@ Array = NDArray[np.float64]
 
 HALF_LIVES = (np.inf, 64.0, 16.0, 4.0)
 """Half-lives that compete, in dates; more cost time in proportion."""
-SHARED = (0.5, 2.0, 8.0, 32.0, np.inf)
-"""Weights k of all contexts that compete, in tasks; at infinity the context is ignored, below 1 a single task in a
+SHARED = (0.5, 2.0, 8.0, np.inf)
+"""Weights k of all contexts that compete, in tasks; at infinity the context is ignored, below 1 one task in a
 context tells more than all others."""
 LIBRARY_TASKS = 4.0
 """Weight k₀ of the library's prior, in tasks; more trust it longer."""
@@ -68,7 +68,7 @@ class TypePrior:
 
     @classmethod
     def of_types(cls, types: Sequence[Iterable[Mapping[tuple[int, int], float]]]) -> Self:
-        """The prior over types, with a uniform G₀, from the belief in each of their members by date and context."""
+        """The prior over types, with a uniform G₀, from the belief in their members by date and context."""
         # Without types, of one that was never seen.
         own = np.eye(max(len(types), 1))
         made = cls(own.mean(axis=0))
