@@ -118,16 +118,6 @@ class TypePrior:
         experts = self._predictions([context], date, self.dates.get(date, {}))[0]
         return np.einsum("hk,hkt->t", self._weights(), experts)
 
-    def weights(self, date: int) -> dict[tuple[float, float], float]:
-        """Half-life in dates and weight of all contexts in tasks, to the probability that they predict best."""
-        self._read_until(date)
-        weights = self._weights()
-        return {
-            (half_life, shared): float(weights[i, j])
-            for i, half_life in enumerate(self.half_lives)
-            for j, shared in enumerate(SHARED)
-        }
-
     def _weights(self) -> Array:
         weights = np.exp(self._log_weights - self._log_weights.max())
         return weights / weights.sum()
