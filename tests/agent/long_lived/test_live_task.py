@@ -120,7 +120,7 @@ def test_spare_time_goes_where_the_type_is_in_doubt(settled):
     with pytest.raises(InputError, match="live through some first"):
         context_to_practise(Knowledge.empty(TWO), np.random.default_rng(0))
     drawn = [context_to_practise(knowledge, np.random.default_rng(seed)) for seed in range(60)]
-    first, second = curious_contexts(knowledge.sightings())
+    first, second = curious_contexts(knowledge.type_prior())
     share = first.interest / (first.interest + second.interest)
     assert abs(drawn.count(first.context) / 60 - share) < 0.2
 
@@ -128,12 +128,12 @@ def test_spare_time_goes_where_the_type_is_in_doubt(settled):
 def test_curiosity_tells_disagreement_from_ignorance(settled):
     """A context whose tasks disagree stays in doubt; one that was met once may have any of the known types."""
     knowledge, (one, other, *_) = deepcopy(settled[0]), settled[0].known_types().types
-    often = min(found.unsure for found in curious_contexts(knowledge.sightings()))
+    often = min(found.unsure for found in curious_contexts(knowledge.type_prior()))
     for date in range(24, 44):
         knowledge.learn(news_of(7, date, {(one, other)[date % 2].members[0]: 1.0}))
         knowledge.learn(news_of(8, date, {one.members[0]: 1.0}))
     knowledge.learn(news_of(9, 44, {one.members[0]: 1.0}))
-    by_context = {found.context: found for found in curious_contexts(knowledge.sightings())}
+    by_context = {found.context: found for found in curious_contexts(knowledge.type_prior())}
     torn, clear, once = (by_context[context] for context in (7, 8, 9))
     assert torn.interest > 2 * clear.interest
     assert torn.disagreement > torn.unsure

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.agent.types.type_prior import LIBRARY_TASKS, TypePrior
+from lifelore.agent.types.type_prior import LIBRARY_TASKS, SHARED, TypePrior
 from lifelore.core.errors import InputError
 
 PRIOR = [0.5, 0.3, 0.2]
@@ -21,11 +21,11 @@ def learnt(lived, **how) -> TypePrior:
 
 
 def test_one_date_by_hand():
-    """No date has been predicted yet, so the four weights of all contexts count alike."""
+    """No date has been predicted yet, so all weights of all contexts count alike."""
     assert TypePrior(PRIOR).prior(4, date=3) == pytest.approx(PRIOR)
     made = learnt([(7, [1.0, 0, 0], 0), (7, [0, 1.0, 0], 0), (8, [0, 1.0, 0], 0)])
     anywhere = (np.array([1.0, 2.0, 0.0]) + LIBRARY_TASKS * np.array(PRIOR)) / (3 + LIBRARY_TASKS)
-    own = [(np.array([1.0, 1.0, 0.0]) + k * anywhere) / (2 + k) for k in (2.0, 8.0, 32.0)]
+    own = [(np.array([1.0, 1.0, 0.0]) + k * anywhere) / (2 + k) for k in SHARED[:-1]]
     assert made.prior(7, date=0) == pytest.approx(np.mean([*own, anywhere], axis=0))
 
 
@@ -67,12 +67,12 @@ def test_popularity_that_changes_is_followed_and_one_that_stays_is_not_forgotten
     moved = learnt([(0, 10 * np.eye(3)[date // 30 % 3], date) for date in range(90)])
     drawn = np.random.default_rng(1).multinomial(10, [0.2, 0.3, 0.5], size=90)
     steady = learnt([(0, counts, date) for date, counts in enumerate(drawn)])
-    short = sum(weight for (half_life, _), weight in moved.weights(90).items() if half_life <= 16)
-    long = sum(weight for (half_life, _), weight in steady.weights(90).items() if half_life >= 64)
-    assert short > 0.99
-    assert long > 0.65
     assert moved.prior(0, 90)[2] > 0.8
     assert steady.prior(0, 90) == pytest.approx(drawn.sum(axis=0) / 900, abs=0.02)
+    # Rows are half-lives, the longest first.
+    short, long = moved._weights()[2:].sum(), steady._weights()[:2].sum()
+    assert short > 0.99
+    assert long > 0.65
 
 
 def test_contexts_count_where_they_tell_something():

@@ -165,12 +165,7 @@ def advise(lines: Lines, settings: AdviseSettings, name: str = "input") -> Itera
 
 
 def world_of(settings: AdviseSettings) -> GridWorld:
-    """The world of a map, or of a world's name and seed."""
-    return world_from_settings(world_settings(settings))
-
-
-def world_settings(settings: AdviseSettings) -> WorldSettings:
-    """The settings of the world of a map, or of a world's name and seed.
+    """The world of a map, or of a world's name and seed.
 
     Raises
     ------
@@ -178,13 +173,15 @@ def world_settings(settings: AdviseSettings) -> WorldSettings:
         The seed is no number, or no world has this name.
     """
     if settings.world.endswith((".yaml", ".yml")) or os.sep in settings.world:
-        return WorldSettings("building", settings.world, settings.cell, settings.robot_radius)
+        given = WorldSettings("building", settings.world, settings.cell, settings.robot_radius)
+        return world_from_settings(given)
     domain, _, seed = settings.world.partition(":")
     if not seed.isdecimal() and ":" in settings.world:
         raise InputError(f"world must be a map's YAML, or NAME:SEED with a whole number, got '{settings.world}'")
     if domain not in domain_names():
         raise NotFoundError(f"world must be a map's YAML or one of {', '.join(domain_names())}, got '{domain}'")
-    return WorldSettings(domain, None, settings.cell, settings.robot_radius, seed=int(seed or 0))
+    named = WorldSettings(domain, None, settings.cell, settings.robot_radius, seed=int(seed or 0))
+    return world_from_settings(named)
 
 
 def _goals(settings: AdviseSettings, walks: list[Trajectory], world: GridWorld) -> list[int]:

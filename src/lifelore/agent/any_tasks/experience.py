@@ -17,7 +17,7 @@ from lifelore.action.priors.action_prior import KIND as PRIOR_KIND
 from lifelore.action.priors.action_prior import VERSION as PRIOR_VERSION
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.any_tasks.moves import ONE, Counts, counts_of, counts_record
-from lifelore.agent.any_tasks.policies import StoredPolicy, StoresItself, stored, table_records, update_table
+from lifelore.agent.any_tasks.policies import StoredPolicy, stored, table_records, update_table
 from lifelore.agent.external_world.context_labels import KIND as LABELS
 from lifelore.agent.external_world.context_labels import VERSION as LABELS_VERSION
 from lifelore.agent.external_world.context_labels import ContextLabels, labels_record
@@ -188,8 +188,8 @@ class Experience:
             before = self.types[name].policy if name in self.types else None
             known = before if isinstance(before, dict) else {}
             yield from table_records(policy, POLICIES, f"{self.key}/table/{name}", known)
-        elif isinstance(policy, StoresItself):
-            yield stored(policy, POLICIES, f"{self.key}/bytes/{name}")
+        elif hasattr(policy, "to_bytes"):
+            yield stored(policy.to_bytes(), POLICIES, f"{self.key}/bytes/{name}")
 
     def add(self, records: Iterable[Record]) -> None:
         """Add records of this key; others are left out."""

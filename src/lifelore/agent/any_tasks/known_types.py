@@ -10,7 +10,7 @@ from lifelore.agent.any_tasks.experience import Experience
 from lifelore.agent.any_tasks.known_moves import KnownMoves
 from lifelore.agent.any_tasks.moves import Counts
 from lifelore.agent.types.same_type import JoinedType
-from lifelore.agent.types.type_prior import Sightings
+from lifelore.agent.types.type_prior import TypePrior
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 
 Array = NDArray[np.float64]
@@ -53,10 +53,10 @@ class KnownTypes:
     def _moves(self, members: Sequence[str]) -> Counts:
         return sum((self.experience.types[name].moves for name in members), Counter())
 
-    def sightings(self) -> Sightings:
-        """Where these types were seen."""
+    def type_prior(self) -> TypePrior:
+        """Which of these types to expect, by context and date."""
         types = self.experience.types
-        return Sightings.of([[types[name].sightings for name in one.members] for one in self.types])
+        return TypePrior.of_types([[types[name].sightings for name in one.members] for one in self.types])
 
 
 def known_returns(

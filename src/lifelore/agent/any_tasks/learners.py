@@ -1,14 +1,14 @@
-"""What acts in a task: the protocol of players, and policies of the user's learner."""
+"""What acts in a task: a learner by table, or a policy of the user's learner."""
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.external_world.episode import Step
-from lifelore.agent.external_world.table_learner import TABLES
+from lifelore.agent.external_world.table_learner import TABLES, TableLearner
 from lifelore.agent.external_world.useful_actions import EpisodeReturns
 from lifelore.core.errors import InputError
 
@@ -24,36 +24,8 @@ def checked_learner(learner: "str | Learner") -> "str | Learner":
     return learner
 
 
-class Player(Protocol):
-    """What acts in a task, and learns from each move that it makes."""
-
-    def knows(self, state: int) -> bool:
-        """Whether it has acted in a state, by code, or learnt there."""
-        ...
-
-    def act(self, state: int, context: int, explore: bool) -> int:
-        """The action in a state and context, by code; exploring now and then, or not."""
-        ...
-
-    def observe(self, step: Step) -> None:
-        """Learn from a step."""
-        ...
-
-    def end_episode(self, steps: list[Step], earned: float, ended: bool) -> None:
-        """Learn from an episode; `ended`: the world terminated it."""
-        ...
-
-    def policy(self) -> Any:
-        """What was learnt."""
-        ...
-
-    def best(self) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """Contexts (n,) of the visited states, and their useful actions (n, n_actions)."""
-        ...
-
-
 class FixedPolicy:
-    """A policy of the user's learner, which learns nothing more here; a `Player`.
+    """A policy of the user's learner, which learns nothing more here and acts as a `TableLearner` does.
 
     Parameters
     ----------
@@ -97,3 +69,7 @@ class FixedPolicy:
         """Contexts (n,) of the visited states, and the actions taken in the best tenth of the episodes."""
         visited = list(self.visited)
         return np.array([context for _, context in visited], np.int64), self.returns.taken_in_best(visited)
+
+
+Player = TableLearner | FixedPolicy
+"""What acts in a task, and learns from each move that it makes."""

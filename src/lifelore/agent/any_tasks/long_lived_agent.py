@@ -261,8 +261,8 @@ class LongLivedAgent(AbstractContextManager):
         """Contexts by how much the agent would rather meet them next: entropy × frequency, the largest first."""
         if self._experience is None:
             return []
-        known = curious_contexts(KnownTypes(self._experience).sightings())
-        return [replace(one, context=self._label(one.context)) for one in known]
+        found = curious_contexts(KnownTypes(self._experience).type_prior())
+        return [replace(one, context=self._label(one.context)) for one in found]
 
     def explain(self, result: TaskResult) -> str:
         """Why the agent acted as it did in a task, in a few lines."""

@@ -118,7 +118,7 @@ class OneTask:
     def prior_over(self, known: KnownTypes) -> NDArray[np.float64]:
         """The prior over the known types, given the context and the date."""
         context = self.context if self.abilities.context else NOWHERE
-        return known.sightings().type_prior().prior(context, self.result.number)
+        return known.type_prior().prior(context, self.result.number)
 
     @property
     def alarmed(self) -> bool:

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,19 +33,6 @@ def update_table(table: QTable, record: Record, n_actions: int) -> None:
         table.setdefault(state, np.zeros(n_actions))[action] = value
 
 
-@runtime_checkable
-class StoresItself(Protocol):
-    """A policy of the user's learner that memory can keep; the learner's ``from_bytes`` makes it again."""
-
-    def __call__(self, observation: Any) -> int:
-        """The action for an observation."""
-        ...
-
-    def to_bytes(self) -> bytes:
-        """All that makes the policy again."""
-        ...
-
-
 @dataclass(frozen=True)
 class StoredPolicy:
     """A policy of the user's learner as memory holds it."""
@@ -59,8 +45,7 @@ class StoredPolicy:
         return cls(bytes_of(record.values[1:], int(record.values[0])))
 
 
-def stored(policy: StoresItself, kind: str, key: str) -> Record:
+def stored(content: bytes, kind: str, key: str) -> Record:
     """A policy of the user's learner as a record; a shorter one leaves old words behind, which do not count."""
-    content = policy.to_bytes()
     words = np.concatenate([[len(content)], words_of(content)]).astype(np.int64)
     return Record(kind, key, 1, "newest", np.arange(len(words)), words)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from lifelore.agent.long_lived.knowledge import Knowledge
-from lifelore.agent.types.type_prior import Sightings
+from lifelore.agent.types.type_prior import TypePrior
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import entropy
 
@@ -69,21 +69,20 @@ class CuriousType:
     n_tasks: float
 
 
-def curious_contexts(sightings: Sightings) -> list[CuriousContext]:
+def curious_contexts(prior: TypePrior) -> list[CuriousContext]:
     """Contexts that were met, the most interesting first."""
-    sighted = sightings.beliefs
-    if not sighted:
-        return []
     beliefs: dict[int, list[np.ndarray]] = {}
-    for (_, context), belief in sighted.items():
-        beliefs.setdefault(context, []).append(belief)
-    prior, today, found = sightings.type_prior(), max(date for date, _ in sighted) + 1, []
+    for date in sorted(prior.dates):
+        for context, belief in prior.dates[date].items():
+            beliefs.setdefault(context, []).append(belief)
+    today, found = max(prior.dates, default=0) + 1, []
+    n_tasks = sum(map(len, beliefs.values()))
     for context, tasks in beliefs.items():
         rows = np.array(tasks)
         rows /= rows.sum(axis=1, keepdims=True)
         doubt = float(entropy(prior.prior(context, today)[None])[0])
         shared = float(entropy(rows.mean(axis=0)[None])[0] - entropy(rows).mean())
-        found.append(CuriousContext(context, doubt, len(rows) / len(sighted), min(doubt, max(0.0, shared))))
+        found.append(CuriousContext(context, doubt, len(rows) / n_tasks, min(doubt, max(0.0, shared))))
     return sorted(found, key=lambda one: (-one.interest, one.context))
 
 
@@ -95,7 +94,7 @@ def context_to_practise(knowledge: Knowledge, generator: np.random.Generator) ->
     InputError
         No context was met yet.
     """
-    found = curious_contexts(knowledge.sightings())
+    found = curious_contexts(knowledge.type_prior())
     if not found:
         raise InputError("a context to practise needs tasks that were lived; live through some first")
     # Where nothing is in doubt, often met contexts are practised.

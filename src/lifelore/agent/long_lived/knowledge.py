@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from lifelore.action.priors.action_prior import KIND, ActionPrior
 from lifelore.agent.long_lived.known_types import Effects, KnownTypes, effect_counts
 from lifelore.agent.long_lived.task_family import SharedKnowledge, TaskFamily
-from lifelore.agent.types.type_prior import Sightings
+from lifelore.agent.types.type_prior import TypePrior
 from lifelore.core.protocols import Record
 
 Array = NDArray[np.float64]
@@ -93,10 +93,12 @@ class Knowledge:
             self._view = KnownTypes.joined(family, names, counts)
         return self._view
 
-    def sightings(self) -> Sightings:
-        """Where `known_types` were seen."""
+    def type_prior(self) -> TypePrior:
+        """Which of `known_types` to expect, by context and date."""
         known = self.known_types().types
-        return Sightings.of([[_by_when(self.types[name].sightings) for name in one.members] for one in known])
+        return TypePrior.of_types(
+            [[_by_when(self.types[name].sightings) for name in one.members] for one in known]
+        )
 
     # ---- learning ----------------------------------------------------------------------------------
 

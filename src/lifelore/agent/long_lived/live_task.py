@@ -70,7 +70,7 @@ def live_task(
     # Recognise: which types does this context usually have?
     lived.prior = np.full(len(known), 1 / max(len(known), 1))
     if abilities.prior and len(known):
-        lived.prior = knowledge.sightings().type_prior().prior(drawn.context, drawn.number)
+        lived.prior = knowledge.type_prior().prior(drawn.context, drawn.number)
     recognition = Recognition(knowledge, lived.prior, false_alarm, UNKNOWN, seed)
     shared.guided = abilities.prior
 

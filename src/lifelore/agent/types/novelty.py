@@ -118,11 +118,6 @@ class NoveltyAlarm:
         self.score = float((logsumexp(self._odds, axis=1) - np.log(len(SHARES))).sum())
         self.alarm |= self.score > self.threshold
 
-    @property
-    def belief(self) -> Array:
-        """Over the known types, (n_types,), from the first effects of causes."""
-        return np.exp(self._belief - logsumexp(self._belief))
-
     def _simulated(self, laws: Array, prior: Array, frequency: Array, generator: np.random.Generator) -> Array:
         """The largest log odds in each of `N_TASKS` tasks of known types, (N_TASKS,)."""
         # The largest of log frequency + Gumbel noise come first: a draw without replacement, by frequency.

@@ -1,6 +1,6 @@
 """Prior over types in a context, learnt from past posteriors: an action prior whose actions are the types.
 
-    n_d(c, τ) = Σ of β_end(τ) over the tasks of date d in context c        counts: an `ActionPrior` for each date
+    n_d(c, τ) = Σ of β_end(τ) over the tasks of date d in context c        as counts of actions
     N_h(c, τ) = Σ_d 2^(−age of d / h) n_d(c, τ)                            decay on read, half-life h
     P_h(τ)    = (N_h(·, τ) + k₀ G₀(τ)) / (ΣN_h + k₀)                       in any context
     P_hk(τ|c) = (N_h(c, τ) + k P_h(τ)) / (ΣN_h(c) + k)                     in context c
@@ -12,24 +12,22 @@ dated and never decay in memory, so those of several robots merge by addition. T
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
 
 Array = NDArray[np.float64]
 
 HALF_LIVES = (np.inf, 64.0, 16.0, 4.0)
 """Half-lives that compete, in dates; more cost time in proportion."""
-SHARED = (2.0, 8.0, 32.0, np.inf)
-"""Weights k of all contexts that compete, in tasks; at infinity the context is ignored."""
+SHARED = (0.5, 2.0, 8.0, np.inf)
+"""Weights k of all contexts that compete, in tasks; at infinity the context is ignored, below 1 one task in a
+context tells more than all others."""
 LIBRARY_TASKS = 4.0
 """Weight k₀ of the library's prior, in tasks; more trust it longer."""
-LEAST_BELIEF = 1e-6
-"""Beliefs below this are not counted."""
 
 
 class TypePrior:
@@ -65,8 +63,20 @@ class TypePrior:
         if not len(half_lives) or not all(half_life > 0 for half_life in half_lives):
             raise InputError(f"half_lives must be above 0, at least one, got {half_lives}")
         self.half_lives = tuple(half_lives)
-        self.dates: dict[int, ActionPrior] = {}
+        self.dates: dict[int, dict[int, Array]] = {}
         self._forget_past()
+
+    @classmethod
+    def of_types(cls, types: Sequence[Iterable[Mapping[tuple[int, int], float]]]) -> Self:
+        """The prior over types, with a uniform G₀, from the belief in their members by date and context."""
+        # Without types, of one that was never seen.
+        own = np.eye(max(len(types), 1))
+        made = cls(own.mean(axis=0))
+        for row, members in zip(own, types, strict=False):
+            for seen in members:
+                for (date, context), belief in seen.items():
+                    made.learn(context, belief * row, date)
+        return made
 
     @property
     def n_types(self) -> int:
@@ -95,10 +105,8 @@ class TypePrior:
         belief = np.asarray(belief, np.float64)
         if belief.shape != (self.n_types,) or not (belief >= 0).all():
             raise InputError(f"belief must be ({self.n_types},) and at least 0, got {belief!r:.80}")
-        counts = np.where(belief >= LEAST_BELIEF, belief, 0.0)
-        if date not in self.dates:
-            self.dates[date] = ActionPrior(self.n_types)
-        self.dates[date].update([context], counts[None] > 0, counts[None])
+        counts = self.dates.setdefault(date, {})
+        counts[context] = counts.get(context, 0.0) + belief
         if date < self._next_date:
             self._forget_past()
 
@@ -107,35 +115,21 @@ class TypePrior:
     def prior(self, context: int, date: int) -> Array:
         """Prior over types in a context, (n_types,), sums to 1; from the counts of this date and those before."""
         self._read_until(date)
-        experts = self._predictions([context], date, self.dates.get(date))[0]
+        experts = self._predictions([context], date, self.dates.get(date, {}))[0]
         return np.einsum("hk,hkt->t", self._weights(), experts)
-
-    def weights(self, date: int) -> dict[tuple[float, float], float]:
-        """Half-life in dates and weight of all contexts in tasks, to the probability that they predict best."""
-        self._read_until(date)
-        weights = self._weights()
-        return {
-            (half_life, shared): float(weights[i, j])
-            for i, half_life in enumerate(self.half_lives)
-            for j, shared in enumerate(SHARED)
-        }
 
     def _weights(self) -> Array:
         weights = np.exp(self._log_weights - self._log_weights.max())
         return weights / weights.sum()
 
-    def _predictions(self, contexts: Iterable[int], date: int, today: ActionPrior | None = None) -> Array:
-        """P_hk(τ | c), (n_contexts, n_half_lives, n_shared, n_types), with the counts of `today` if given."""
-        contexts = list(contexts)
-        in_context = np.stack([self._decayed(context, date) for context in contexts])
-        everywhere = self._decayed(None, date)
-        if today is not None:
-            in_context += today.counts(contexts)[:, None]
-            everywhere = everywhere + today.counts(today.contexts).sum(axis=0)
+    def _predictions(self, contexts: Iterable[int], date: int, today: Mapping[int, Array]) -> Array:
+        """P_hk(τ | c), (n_contexts, n_half_lives, n_shared, n_types), with the counts of `today`."""
+        in_context = np.stack([self._decayed(context, date) + today.get(context, 0.0) for context in contexts])
+        everywhere = self._decayed(None, date) + sum(today.values())
         total = everywhere.sum(axis=-1, keepdims=True)
         anywhere = (everywhere + LIBRARY_TASKS * self.library_prior) / (total + LIBRARY_TASKS)
         total = in_context.sum(axis=-1, keepdims=True)
-        found = np.empty((len(contexts), len(self.half_lives), len(SHARED), self.n_types))
+        found = np.empty((len(in_context), len(self.half_lives), len(SHARED), self.n_types))
         for place, shared in enumerate(SHARED):
             weight = 0.0 if np.isinf(shared) else 1 / (total + shared)
             found[:, :, place] = weight * in_context + (1 - weight * total) * anywhere
@@ -155,13 +149,10 @@ class TypePrior:
             self._forget_past()
         for past in sorted(one for one in self.dates if self._next_date <= one < date):
             counts = self.dates[past]
-            contexts = counts.contexts.tolist()
-            rows = counts.counts(contexts)
-            logs = np.log(np.maximum(self._predictions(contexts, past), np.finfo(float).tiny))
-            self._log_weights += np.einsum("ct,chkt->hk", rows, logs)
-            for context, row in zip(contexts, rows, strict=True):
+            logs = np.log(np.maximum(self._predictions(counts, past, {}), np.finfo(float).tiny))
+            self._log_weights += np.einsum("ct,chkt->hk", np.stack(list(counts.values())), logs)
+            for context, row in (*counts.items(), (None, sum(counts.values()))):
                 self._past[context] = past, self._decayed(context, past) + row
-            self._past[None] = past, self._decayed(None, past) + rows.sum(axis=0)
         self._next_date = max(self._next_date, date)
 
     def _decayed(self, context: int | None, date: int) -> Array:
@@ -170,31 +161,3 @@ class TypePrior:
             return np.zeros((len(self.half_lives), self.n_types))
         last, rows = self._past[context]
         return rows * 0.5 ** ((date - last) / np.array(self.half_lives))[:, None]
-
-
-class Sightings(NamedTuple):
-    """Where known types were seen.
-
-    n_types : number of types
-    beliefs : sum of the beliefs in each type at the end of tasks, (n_types,), by date and context in their order
-    """
-
-    n_types: int
-    beliefs: dict[tuple[int, int], Array]
-
-    @classmethod
-    def of(cls, types: Sequence[Iterable[Mapping[tuple[int, int], float]]]) -> Self:
-        """The sightings of types, from the belief in each of their members by date and context."""
-        rows: dict[tuple[int, int], Array] = {}
-        for number, members in enumerate(types):
-            for seen in members:
-                for when, belief in seen.items():
-                    rows.setdefault(when, np.zeros(len(types)))[number] += belief
-        return cls(len(types), {when: rows[when] for when in sorted(rows)})
-
-    def type_prior(self) -> TypePrior:
-        """The prior that was learnt from them, with a uniform G₀."""
-        made = TypePrior(np.full(self.n_types, 1 / self.n_types))
-        for (date, context), belief in self.beliefs.items():
-            made.learn(context, belief, date)
-        return made

@@ -58,16 +58,14 @@ def known_family(memory: Memory, domain: str, seed: int = 0) -> dict[str, Any]:
 
 def _contexts(knowledge: Knowledge) -> list[dict[str, Any]]:
     names = [type_words(one.name) for one in knowledge.known_types().types]
-    sightings = knowledge.sightings()
-    prior, sighted = sightings.type_prior(), list(sightings.beliefs)
-    today = max(date for date, _ in sighted)
-    seen = [context for _, context in sighted]
+    prior = knowledge.type_prior()
+    today = max(prior.dates)
 
     def entry(one: CuriousContext) -> dict[str, Any]:
         expected = prior.prior(one.context, today)
         return {
             "context": one.context,
-            "tasks": seen.count(one.context),
+            "tasks": sum(one.context in seen for seen in prior.dates.values()),
             "expected": {name: round(float(p), 4) for name, p in zip(names, expected, strict=True)},
             "entropy": abs(round(one.entropy, 4)),
             "unsure": round(one.unsure, 4),
@@ -76,7 +74,7 @@ def _contexts(knowledge: Knowledge) -> list[dict[str, Any]]:
             "interest": abs(round(one.interest, 4)),
         }
 
-    return [entry(one) for one in curious_contexts(sightings)]
+    return [entry(one) for one in curious_contexts(prior)]
 
 
 def _telling(knowledge: Knowledge) -> dict[str, list[str]]:

@@ -1,5 +1,7 @@
 """The lives in a memory: the tasks of each robot, by kind of task, as `live` and `live_long` have stored them."""
 
+from collections import Counter
+from collections.abc import Iterator
 from typing import Any
 
 from lifelore.agent.live import transitions
@@ -17,13 +19,9 @@ MOST_TASKS = 2000
 
 def lives_in(memory: Memory) -> list[dict[str, Any]]:
     """An entry for each robot and domain: ``robot``, ``domain``, ``kind`` (see `TYPES`), ``tasks`` (how many)."""
-    worlds = _world_names(memory)
-    found: dict[tuple[str, str, str], int] = {}
-    for robot in memory.robots():
-        for document in memory.task_descriptions(robot):
-            if (kind := _kind(document)) is not None:
-                key = robot, _domain(document, kind, worlds), kind
-                found[key] = found.get(key, 0) + 1
+    found = Counter(
+        (robot, domain, kind) for robot in memory.robots() for domain, kind, _ in _documents(memory, robot)
+    )
     return [
         {"robot": robot, "domain": domain, "kind": kind, "tasks": tasks}
         for (robot, domain, kind), tasks in sorted(found.items())
@@ -42,10 +40,7 @@ def tasks_of(memory: Memory, robot: str, domain: str) -> list[dict[str, Any]]:
     NotFoundError
         The robot has no task of this domain.
     """
-    rows = [
-        _row(document) if kind == TYPES else _grid_row(document)
-        for document, kind in _tasks(memory, robot, domain)
-    ]
+    rows = [_row(one) if kind == TYPES else _grid_row(one) for kind, one in _tasks(memory, robot, domain)]
     return sorted(rows, key=lambda row: row["task"])[-MOST_TASKS:]
 
 
@@ -57,7 +52,7 @@ def task_of(memory: Memory, robot: str, domain: str, number: int) -> dict[str, A
     NotFoundError
         There is no such task.
     """
-    for document, kind in _tasks(memory, robot, domain):
+    for kind, document in _tasks(memory, robot, domain):
         if kind == TYPES and document["task"] == number:
             return document | {"words": explained(document)}
         if kind == GRID and document["index"] == number:
@@ -67,28 +62,21 @@ def task_of(memory: Memory, robot: str, domain: str, number: int) -> dict[str, A
     )
 
 
-def _tasks(memory: Memory, robot: str, domain: str) -> list[tuple[dict[str, Any], str]]:
-    worlds = _world_names(memory)
-    kinds = ((document, _kind(document)) for document in memory.task_descriptions(robot))
-    found = [(document, kind) for document, kind in kinds if kind and _domain(document, kind, worlds) == domain]
+def _tasks(memory: Memory, robot: str, domain: str) -> list[tuple[str, dict[str, Any]]]:
+    found = [(kind, document) for name, kind, document in _documents(memory, robot) if name == domain]
     if not found:
         raise NotFoundError(f"robot {robot!r} has no task of {domain!r} in this memory; /v1/lives lists all lives")
     return found
 
 
-def _world_names(memory: Memory) -> dict[str, str]:
-    """Kind of world by fingerprint, of the worlds of which memory knows moves."""
-    return {key: str(about.get("world")) for key, _, about in memory.keys(transitions.KIND)}
-
-
-def _kind(document: dict[str, Any]) -> str | None:
-    if "first_episode" in document and "domain" in document:
-        return TYPES
-    return GRID if {"index", "goal", "world"} <= document.keys() else None
-
-
-def _domain(document: dict[str, Any], kind: str, worlds: dict[str, str]) -> str:
-    return document["domain"] if kind == TYPES else worlds.get(document["world"], UNNAMED)
+def _documents(memory: Memory, robot: str) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    """Domain and kind of a robot's tasks, and what was stored; other documents are left out."""
+    world_names = {key: str(about.get("world")) for key, _, about in memory.keys(transitions.KIND)}
+    for document in memory.task_descriptions(robot):
+        if {"first_episode", "domain"} <= document.keys():
+            yield document["domain"], TYPES, document
+        elif {"index", "goal", "world"} <= document.keys():
+            yield world_names.get(document["world"], UNNAMED), GRID, document
 
 
 def _row(document: dict[str, Any]) -> dict[str, Any]:
