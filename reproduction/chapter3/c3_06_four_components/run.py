@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate, mean_estimate
 from reproduction.chapter3.c3_05_one_component import run as one_component
-from reproduction.chapter3.c3_05_one_component.figure import draw
 from reproduction.chapter3.c3_05_one_component.run import (
     Sequences,
     cells,
+    draw,
     grid_of,
     rows,
     run_cell,

@@ -5,8 +5,12 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from lifelore.core.metrics import Estimate, ratio_estimate
+from lifelore.figures.style import Axes
 from reproduction.chapter4.ball_game.games import check_games as check
+from reproduction.chapter4.ball_game.looks import WORDS, method_lines
 from reproduction.chapter4.ball_game.trials import BEAT, EXP3, SHARED, STATIC, cells, readings_of, run_cell
+from reproduction.figures.curves import draw_curves
+from reproduction.figures.panels import panels
 
 __all__ = ["cells", "check", "readings", "rows", "run_cell", "shared"]
 shared = SHARED
@@ -39,3 +43,14 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """Mean loss of an episode by method and size of the population in the first game."""
     losses = {method: np.array(results[0]["losses"][method]).mean(axis=(1, 2)) for method in (STATIC, EXP3, BEAT)}
     return [{"method": method, "mean": lost.round(4).tolist()} for method, lost in losses.items()]
+
+
+@panels(5.6, 3.6)
+def draw(result: Mapping, axes: Axes) -> None:
+    """Loss of the best static speed, EXP-3 and BEAT by the diversity of the population (Figure 4.16).
+
+    The three curves of the thesis; intervals, paired by runs, stand with the statements.
+    """
+    series = {WORDS[row["method"]]: {"mean": row["mean"]} for row in result["rows"]}
+    draw_curves(axes, None, series, looks=method_lines(marker="o", markersize=4))
+    axes.set(xlabel="population diversity (types)", ylabel="mean loss of an episode", xticks=range(1, 7))
