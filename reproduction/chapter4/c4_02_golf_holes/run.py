@@ -9,18 +9,11 @@ from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.golf.golf import CLUBS, Golf
 from lifelore.figures.style import BLUE, GREEN, GREY, INK, LIGHT, ORANGE, PURPLE, VERMILION, Axes
-from reproduction.chapter4.golf.rounds import (
-    WOOD,
-    draw_group,
-    errors_of,
-    exact_library,
-    learnt_library,
-    play_greedily,
-)
+from reproduction.chapter4.golf import rounds
 from reproduction.engine.records import having
 from reproduction.figures.panels import panels
 
-FIRST = {None: "greedy", WOOD: "club 1"}
+FIRST = {None: "greedy", rounds.WOOD: "club 1"}
 """The first club: the rule's choice, or club 1 as in the worked example."""
 
 
@@ -38,12 +31,12 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 
 def _play(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict:
-    library = exact_library()
+    library = rounds.exact_library()
     if cell["samples"]:
         training = stream(seed, "training shots", cell["samples"], group)
-        library = learnt_library(training, cell["samples"], settings["pseudo_count"])
-    holes = draw_group(settings, seed, group)
-    found = play_greedily(library, *holes, stream(seed, "golfer", group), cell["first"])
+        library = rounds.learnt_library(training, cell["samples"], settings["pseudo_count"])
+    holes = rounds.draw_group(settings, seed, group)
+    found = rounds.play_greedily(library, *holes, stream(seed, "golfer", group), cell["first"])
     return {
         "error": np.abs(found.error).mean(axis=0).round(5).tolist(),
         "entropy": found.entropy.mean(axis=0).round(6).tolist(),
@@ -52,10 +45,10 @@ def _play(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict:
 
 def _play_clubs(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict:
     """Mean misses of single clubs, and of the best club for each hole, with the second shot's luck."""
-    distance, luck = draw_group(settings, seed, group)
+    distance, luck = rounds.draw_group(settings, seed, group)
 
     def miss(clubs: np.ndarray) -> float:
-        return round(float(np.abs(errors_of(clubs, distance, luck[:, 1])).mean()), 5)
+        return round(float(np.abs(rounds.errors_of(clubs, distance, luck[:, 1])).mean()), 5)
 
     golf = Golf()
     best = golf.mean_at(distance).argmax(axis=1)

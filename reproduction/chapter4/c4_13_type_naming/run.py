@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.domains.ball_game.ball_game import SIZES
 from lifelore.figures.style import GREY, Axes
-from reproduction.chapter4.ball_game.games import check_games as check
+from reproduction.chapter4.ball_game import trials
+from reproduction.chapter4.ball_game.games import check_games
 from reproduction.chapter4.ball_game.looks import size_lines
-from reproduction.chapter4.ball_game.trials import BEAT, SHARED, cells, readings_of, run_cell
+from reproduction.chapter4.ball_game.trials import BEAT
 from reproduction.engine.estimates import exact_share, exact_value
 from reproduction.figures.curves import draw_curves
 from reproduction.figures.panels import panels
 
-__all__ = ["cells", "check", "readings", "rows", "run_cell", "shared"]
-shared = SHARED
+cells, check, run_cell, shared = trials.cells, check_games, trials.run_cell, trials.SHARED
 
 
 def size_ratio(counts: Sequence[int], size: int) -> Estimate:
@@ -45,7 +45,7 @@ def numbers(result: Mapping, instead: Mapping[str, str]) -> dict[str, Estimate]:
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterable[tuple[dict, dict[str, Estimate]]]:
     """The numbers of every game, and of the first with each other choice that BEAT has."""
-    return (one for one in readings_of(results, numbers) if _is_of_beat(one[0]))
+    return (one for one in trials.readings_of(results, numbers) if _is_of_beat(one[0]))
 
 
 def _is_of_beat(reading: Mapping[str, str]) -> bool:

@@ -15,26 +15,19 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, ratio_estimate
 from lifelore.core.streams import stream
 from lifelore.figures.style import BLUE, GREY, ORANGE, Axes
+from lifelore.interaction import selection
 from lifelore.interaction.reuse.regret import library_regret
-from lifelore.interaction.selection import (
-    BeliefSampling,
-    ExpectedImprovement,
-    Greedy,
-    InformationDirected,
-    KnowledgeGradient,
-    SelectionRule,
-)
 from reproduction.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN, late_regret, play_rule
 from reproduction.figures.panels import panels
 from reproduction.own.o_01_default_rule.worlds import CALLS, EQUAL, NOISES, world_of
 
-RULES: dict[str, SelectionRule] = {
-    "EI, outcome": ExpectedImprovement(of="outcome"),
-    "EI, pay": ExpectedImprovement(of="pay"),
-    "IDS": InformationDirected(),
-    "KG": KnowledgeGradient(),
-    "sampling": BeliefSampling(),
-    "greedy": Greedy(),
+RULES: dict[str, selection.SelectionRule] = {
+    "EI, outcome": selection.ExpectedImprovement(of="outcome"),
+    "EI, pay": selection.ExpectedImprovement(of="pay"),
+    "IDS": selection.InformationDirected(),
+    "KG": selection.KnowledgeGradient(),
+    "sampling": selection.BeliefSampling(),
+    "greedy": selection.Greedy(),
 }
 CANDIDATES = ("EI, pay", "IDS")
 """Rules among which the library's default is decided: they need no horizon and cost little for many users."""
