@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lifelore.figures.style import GREY, Figure, house_style, new_figure
-from reproduction.chapter4.c4_02_golf_holes.figure import CLUB_COLOURS
+from reproduction.chapter4.c4_02_golf_holes.run import CLUB_COLOURS
 
 _REACH = 80.0
 """Yards to which the two outer categories are drawn; they have no end."""

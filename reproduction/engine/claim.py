@@ -1,4 +1,4 @@
-"""A claim of the thesis as a folder: `claim.toml`, `run.py`, and `figure.py` where numbers alone do not do.
+"""A claim of the thesis as a folder: `claim.toml`, `run.py`, and `figure.py` where a figure is long.
 
 - ``claim.toml``: the thesis's sentence, its statements with the conditions that make them true, settings.
 - ``run.py``: ``cells(settings)`` lists the cells of a run (without it: `each_run`), ``run_cell(settings, cell,
@@ -6,20 +6,25 @@
   or process. ``readings(settings, results)`` gives pairs of a reading of the choices left open (a plain mapping)
   and named estimates there, the default first; ``measure(settings, results)`` gives what is measured at the
   default beside the first reading, or instead of it. One of the two may be missing. ``rows(settings, results)``
-  gives what the figure needs beside them, and may be missing.
-- ``figure.py``: ``draw(result)`` draws the thesis's figure, or ours beside others, from the finished result in the
-  house style, which the engine sets; it runs nothing again. Most are functions of panels, see
-  `reproduction.figures.panels`. Without it the picture shows the number of each statement beside its bound.
+  gives what the figure needs beside them, and may be missing. ``draw(result)``, here or in ``figure.py``, draws
+  the thesis's figure, or ours beside others, from the finished result in the house style, which the engine sets;
+  it runs nothing again. Most are functions of panels, see `reproduction.figures.panels`. Without it the picture
+  shows the number of each statement beside its bound.
 
 Claims with the same ``run_cell`` share their finished cells where a module has ``shared = ("pairs", "camera")``:
 the names of the settings that ``run_cell`` reads. Without it all settings count, and cells belong to one claim.
 
 Results of cells are plain data (what JSON can hold), so that a stored cell equals a fresh one.
+
+Settings have limits: a rule for all, and the table ``[limits]`` of ``claim.toml`` for what differs. A whole
+number is at least 1, other numbers, also in lists, are at least 0, a list is not empty. A limit such as
+``share = { above = 0, most = 1 }`` or ``ties = { among = ["uniform", "prior"] }`` holds for a value, or for every
+value of a list at any depth. No limit names another setting, so that one setting can be changed alone.
 """
 
 import json
 import tomllib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from importlib import import_module
@@ -28,7 +33,6 @@ from typing import TYPE_CHECKING, Any
 
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate
-from reproduction.engine.limits import check_limits
 from reproduction.engine.statement import Statement
 
 if TYPE_CHECKING:
@@ -213,3 +217,49 @@ def _as_type_of(default: Any, value: Any, label: str) -> Any:
     if type(read) is not type(default):
         raise InputError(f"{label} must be of the type of its default {json.dumps(default)}, got {value!r}")
     return read
+
+
+BOUNDS = {
+    "least": ("at least", lambda x, bound: x >= bound),
+    "most": ("at most", lambda x, bound: x <= bound),
+    "above": ("above", lambda x, bound: x > bound),
+    "below": ("below", lambda x, bound: x < bound),
+}
+KEYS = {*BOUNDS, "among"}
+
+
+def check_limits(settings: Mapping[str, Any], limits: Mapping[str, Mapping[str, Any]]) -> None:
+    """Check settings against their limits.
+
+    Raises
+    ------
+    InputError
+        A setting breaks its limit, or a limit names a setting or rule that does not exist.
+    """
+    for key, limit in limits.items():
+        if key not in settings or limit.keys() - KEYS:
+            raise InputError(f"limits of '{key}' must name a setting and rules among {', '.join(sorted(KEYS))}")
+    for key, value in settings.items():
+        if value == []:
+            raise InputError(f"{key} must hold at least one value, got []")
+        limit = limits.get(key, {"least": 1 if isinstance(value, int) else 0})
+        for item in _items(value):
+            _check(key, item, limit)
+
+
+def _check(key: str, item: Any, limit: Mapping[str, Any]) -> None:
+    if "among" in limit and item not in limit["among"]:
+        raise InputError(f"{key} must be among {', '.join(map(str, limit['among']))}, got {item}")
+    if isinstance(item, (int, float)) and not isinstance(item, bool):
+        for rule, bound in limit.items():
+            if rule in BOUNDS and not BOUNDS[rule][1](item, bound):
+                raise InputError(f"{key} must be {BOUNDS[rule][0]} {bound}, got {item}")
+
+
+def _items(value: Any) -> Iterator[Any]:
+    """The value itself, or the items of a list at any depth; nothing of a table."""
+    if isinstance(value, list):
+        for item in value:
+            yield from _items(item)
+    elif not isinstance(value, Mapping):
+        yield value

@@ -14,8 +14,13 @@ from typing import Any
 
 import numpy as np
 
+import lifelore
 from lifelore.core.usable_cores import usable_cores
-from reproduction.engine.source_key import CHECKOUT, source_key
+
+CHECKOUT = Path(__file__).parents[2]
+ROOTS = {"lifelore": Path(lifelore.__file__).parent, "reproduction": Path(__file__).parents[1]}
+"""Folders of the packages that count as ours."""
+
 
 DATA = "LIFELORE_DATA"
 """The variable that names the folder of data that are not in the repository."""
@@ -114,4 +119,15 @@ def _hash_of(folder: Path) -> str:
         digest.update(path.relative_to(folder).as_posix().encode() + b"\0")
         with path.open("rb") as file:
             digest.update(hashlib.file_digest(file, "sha256").digest())
+    return digest.hexdigest()[:16]
+
+
+@cache
+def source_key() -> str:
+    """Hash of the names and contents of every module, and of every file in a folder ``models``."""
+    digest = hashlib.sha256()
+    for package, root in ROOTS.items():
+        for path in sorted([*root.rglob("*.py"), *root.rglob("models/*.*")]):
+            digest.update(f"{package}/{path.relative_to(root).as_posix()}".encode())
+            digest.update(path.read_bytes())
     return digest.hexdigest()[:16]

@@ -17,10 +17,9 @@ from lifelore.core.protocols import Progress
 from lifelore.core.usable_cores import usable_cores
 from reproduction.engine.cell_store import CellStore, write_atomically
 from reproduction.engine.claim import Claim
-from reproduction.engine.provenance import provenance, versions
+from reproduction.engine.provenance import provenance, source_key, versions
 from reproduction.engine.registry import RESULTS, claim_ids, claim_of
 from reproduction.engine.run_cells import CellRun, run_here, run_on_workers
-from reproduction.engine.source_key import source_key
 from reproduction.engine.statement import word_of
 
 RESULT_KEYS = (

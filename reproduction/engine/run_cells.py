@@ -5,18 +5,21 @@ beside it. Starting processes takes longer than most quick runs, which therefore
 """
 
 import socket
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext
 from time import thread_time
 from typing import Any, NamedTuple
 from warnings import catch_warnings, filterwarnings
 
-from lifelore.core.errors import InputError
+from lifelore.core.errors import InputError, MissingExtraError
 from reproduction.engine.cell_store import CellStore
 from reproduction.engine.claim import Claim
+from reproduction.engine.provenance import source_key
 from reproduction.engine.registry import claim_of
-from reproduction.engine.source_key import source_key
+
+SECONDS_TO_CONNECT = 10
+"""Time after which a scheduler counts as unreachable."""
 
 
 class CellRun(NamedTuple):
@@ -62,7 +65,7 @@ def run_on_workers(cells: Sequence[CellRun], jobs: int, scheduler: str | None = 
     """
     from joblib import Parallel, delayed
 
-    from reproduction.engine.cluster import cluster_backend
+    from reproduction.engine.run_cells import cluster_backend
 
     # joblib replaces a worker that has grown by 300 MB, loses nothing, and warns from a thread of its own.
     filterwarnings("ignore", message="A worker stopped while some jobs", category=UserWarning)
@@ -115,3 +118,39 @@ def _timed(claim: Claim, settings: Mapping[str, Any], cell: Mapping[str, Any], s
     """A cell's result and its processor seconds."""
     began = thread_time()
     return claim.run_cell(settings, cell, seed), thread_time() - began
+
+
+@contextmanager
+def cluster_backend(scheduler: str) -> Iterator[None]:
+    """While it is entered, joblib runs on the workers of this scheduler; work of a dead worker runs on another.
+
+    Raises
+    ------
+    MissingExtraError
+        dask.distributed is not installed.
+    InputError
+        The scheduler cannot be reached or has no workers.
+    """
+    from joblib import parallel_config
+
+    try:
+        from distributed import Client  # pyright: ignore[reportMissingImports]
+    except ImportError as error:
+        raise MissingExtraError(
+            "a cluster needs dask.distributed, which is not installed; pip install 'lifelore[cluster]'"
+        ) from error
+    try:
+        client = Client(scheduler, timeout=SECONDS_TO_CONNECT, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise InputError(
+            f"scheduler {scheduler} cannot be reached; start it with: dask scheduler, and give its tcp:// address"
+        ) from error
+    try:
+        if not client.scheduler_info()["workers"]:
+            raise InputError(
+                f"scheduler {scheduler} has no workers; start some: dask worker {scheduler} --nthreads 1"
+            )
+        with parallel_config(backend="dask", client=client):
+            yield
+    finally:
+        client.close()

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import pytest
 
 from lifelore.core.errors import InputError, MissingExtraError
-from reproduction.engine import cluster
+from reproduction.engine import run_cells
 from reproduction.engine.reproduce import reproduce
 
 CLAIM = "C3.1"
@@ -83,7 +83,7 @@ def test_a_cluster_gives_the_same_bits_also_where_a_worker_is_killed(scheduler, 
 
 def test_a_scheduler_that_is_not_there(monkeypatch, tmp_path):
     pytest.importorskip("distributed", reason="needs the extra cluster")
-    monkeypatch.setattr(cluster, "SECONDS_TO_CONNECT", 1)
+    monkeypatch.setattr(run_cells, "SECONDS_TO_CONNECT", 1)
     with pytest.raises(InputError, match=r"scheduler tcp://127\.0\.0\.1:9 cannot be reached"):
         reproduce([CLAIM], out=tmp_path, scheduler="tcp://127.0.0.1:9")
 

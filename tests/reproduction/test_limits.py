@@ -5,7 +5,7 @@ import copy
 import pytest
 
 from lifelore.core.errors import InputError
-from reproduction.engine.limits import check_limits
+from reproduction.engine.claim import check_limits
 from reproduction.engine.registry import claim_ids, claim_of
 
 

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from lifelore.core.errors import InputError
+from reproduction.engine.provenance import source_key
 from reproduction.engine.registry import claim_of
 from reproduction.engine.reproduce import reproduce
 from reproduction.engine.run_cells import run_on_worker
-from reproduction.engine.source_key import source_key
 
 SMALL = {"mazes": 500, "tasks": 5}
 """Ten cells of some 0.1 s."""

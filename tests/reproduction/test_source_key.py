@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 
-from reproduction.engine.source_key import ROOTS, source_key
+from reproduction.engine.provenance import ROOTS, source_key
 
 
 @pytest.mark.parametrize("changed", ["core/errors.py", "perception/relations/models/tabletop.npz"])

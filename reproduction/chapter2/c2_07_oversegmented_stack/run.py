@@ -7,6 +7,7 @@ other objects removed. Thesis: §2.4.3.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,20 +17,11 @@ from lifelore.core.relations import ON
 from lifelore.core.streams import stream
 from lifelore.perception.scene import Scene
 from reproduction.chapter2.scenes.arranged_scenes import arranged
-from reproduction.chapter2.scenes.perturbation import cut_object
+from reproduction.chapter2.scenes.perturbation import cut_object, only
 from reproduction.chapter2.scenes.real_scenes import real_scenes
 from reproduction.chapter2.scenes.scene_example import draw_examples, scene_row
 from reproduction.chapter2.scenes.scene_lots import example_rows, lots, numbers_of, uses_real
-from reproduction.chapter2.scenes.skeletons import (
-    Three,
-    carried_pairs,
-    only,
-    perceived,
-    predicates,
-    reading,
-    real_stacks,
-    standing,
-)
+from reproduction.chapter2.scenes.skeletons import carried_pairs, perceived, predicates, reading, standing
 from reproduction.engine.estimates import exact_share
 from reproduction.engine.records import having, nested
 
@@ -43,6 +35,24 @@ TALL = 0.04
 """Metres: the lower of two real objects is cut if its visible height reaches this, else the upper."""
 
 rows, draw = example_rows, draw_examples
+
+
+class Three(NamedTuple):
+    """A cloud and the labels of three of its objects: the lowest, the middle and the highest of a stack."""
+
+    cloud: LabelledCloud
+    below: int
+    middle: int
+    above: int
+
+
+def real_stacks() -> Iterator[Three]:
+    """Every c on b on a of the real scenes, by the hand-made labels; other objects are removed."""
+    for scene in real_scenes():
+        on = carried_pairs(scene.truth)
+        for above, middle in sorted(on):
+            for below in sorted(b for a, b in on if a == middle):
+                yield Three(only(scene.cloud, (below, middle, above)), below, middle, above)
 
 
 def cells(settings: Mapping) -> list[dict]:

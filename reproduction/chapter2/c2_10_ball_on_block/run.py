@@ -8,10 +8,11 @@ from lifelore.core.metrics import Estimate
 from lifelore.core.relations import ON
 from lifelore.domains.tabletop.settings import TabletopSettings
 from reproduction.chapter2.scenes.arranged_scenes import arranged
+from reproduction.chapter2.scenes.perturbation import only
 from reproduction.chapter2.scenes.real_scenes import real_scenes
 from reproduction.chapter2.scenes.scene_example import draw_examples, scene_row
 from reproduction.chapter2.scenes.scene_lots import example_rows, lots, numbers_of, uses_real
-from reproduction.chapter2.scenes.skeletons import carried_pairs, only, perceived, predicates, reading, standing
+from reproduction.chapter2.scenes.skeletons import carried_pairs, perceived, predicates, reading, standing
 from reproduction.engine.estimates import exact_share
 
 LOT = 10

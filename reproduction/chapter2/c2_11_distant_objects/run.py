@@ -120,10 +120,11 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[di
 
 
 def measures(results: Sequence[Mapping], kernel: str) -> dict[str, Estimate]:
-    """Far apart: share of pairs without a contact, and the ratio of support vectors to those as seen."""
+    """Far apart: shares of pairs without a contact and with few support vectors; their ratio to those as seen."""
     found = np.array([pair["found"][kernel] for result in results for pair in result["pairs"]])
     seen, far = found[:, 0, 0], found[:, -1, 0]
     return {
         "no_contacts_far": exact_share(found[:, -1, 1] == 0),
+        "few_far": exact_share(far < THRESHOLD),
         "far_over_seen": mean_estimate(far / seen),
     }

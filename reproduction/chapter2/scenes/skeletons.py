@@ -5,17 +5,13 @@ table far below it). The thesis's pictures show no such contacts, and no table: 
 (§2.3.2), so the ground's contacts take part only where `ground` is set.
 """
 
-from collections.abc import Iterator
 from functools import cache
-from typing import NamedTuple
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON, PairLabel
 from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.scene import Scene
 from lifelore.perception.scene_perception import perceived_scene
-from reproduction.chapter2.scenes.perturbation import only
-from reproduction.chapter2.scenes.real_scenes import real_scenes
 
 RELATED = (ON, BOTH, ADJACENT)
 _model = cache(shipped_model)
@@ -43,24 +39,6 @@ def reading(scene: Scene, *, ground: bool = False) -> Scene:
 def predicates(scene: Scene) -> set[tuple[str, int, int]]:
     """``(relation, a, b)`` of every pair whose perceived relation is not *none*."""
     return {(r.relation, r.a, r.b) for r in scene.relations if r.relation != NONE}
-
-
-class Three(NamedTuple):
-    """A cloud and the labels of three of its objects: the lowest, the middle and the highest of a stack."""
-
-    cloud: LabelledCloud
-    below: int
-    middle: int
-    above: int
-
-
-def real_stacks() -> Iterator[Three]:
-    """Every c on b on a of the real scenes, by the hand-made labels; other objects are removed."""
-    for scene in real_scenes():
-        on = carried_pairs(scene.truth)
-        for above, middle in sorted(on):
-            for below in sorted(b for a, b in on if a == middle):
-                yield Three(only(scene.cloud, (below, middle, above)), below, middle, above)
 
 
 def carried_pairs(truth: tuple[PairLabel, ...]) -> set[tuple[int, int]]:

@@ -22,6 +22,7 @@ from lifelore.core.streams import stream
 from lifelore.domains.advice.advice_maze import advice_maze, errand, maze_goals
 from lifelore.domains.advice.explorers import EXPLORERS, explorer_probs
 from lifelore.domains.grids.grid_world import GridWorld
+from lifelore.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, VERMILION
 from reproduction.chapter3.advice.advised_walk import Walk, advised_walk
 from reproduction.engine.grid import combinations
 
@@ -32,6 +33,16 @@ EXPERT_WALKS = 20
 KAPPA, WINDOW = 0.5, 300
 """The thesis's cost of advice, and the steps of H (§3.7.2.3)."""
 AGENTS = (*EXPLORERS, "optimal")
+EXPLORER_WORDS = {
+    "random": "random motion",
+    "avoid": "random, avoiding obstacles",
+    "left": "always left",
+    "bug": "goal-seeking bug",
+}
+AGENT_WORDS = {**EXPLORER_WORDS, "q_learning": "Q-learning", "optimal": "optimal"}
+AGENT_COLOURS = dict(zip(AGENT_WORDS, (VERMILION, ORANGE, GREEN, PURPLE, BLUE, INK), strict=True))
+ADVICE_COLOURS = {"without advice": GREY, "with advice": VERMILION, "goals apart (ours)": BLUE}
+"""Names and colours of agents, and colours of ways to be advised, in the figures on advice."""
 ROUNDING = 12
 """Decimals of a maze's number: a difference that is only rounding must not pass for a certain gain."""
 

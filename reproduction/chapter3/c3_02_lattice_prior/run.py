@@ -5,6 +5,7 @@ figure is of 10 tasks, which are a run here; numbers are over many runs. Thesis:
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from lifelore.core.planning.planning import learnt_best_actions
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.lattice import lattice
+from reproduction.chapter3.figures.return_curves import draw_return_curves
 from reproduction.chapter3.learning import grid_tasks
 from reproduction.chapter3.learning.grid_tasks import PLAIN, STATE, Problem, Trained
 from reproduction.chapter3.learning.schedules import schedule_of
@@ -96,3 +98,8 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[di
     """The comparison by schedule, ties, form and α⁰."""
     for place, choice in enumerate(grid_tasks.choices_of(settings)):
         yield choice, _numbers(results, place)
+
+
+METHODS = {"q_learning": ("Q-learning", "q-learning"), "eps_qsap": ("ε-QSAP", "eps-QSAP")}
+draw = partial(draw_return_curves, methods=METHODS)
+"""Figure of claim C3.2: the thesis's Figure 3.3, returns of ε-QSAP and Q-learning on the lattice."""

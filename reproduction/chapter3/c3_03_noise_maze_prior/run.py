@@ -7,6 +7,7 @@ Thesis: §3.4.1, Figures 3.4 and 3.5, Alg. 2 and 4.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 from lifelore.core.errors import InputError
@@ -14,6 +15,7 @@ from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.grids.lattice import lattice
 from lifelore.domains.grids.noise_maze import noise_maze
+from reproduction.chapter3.figures.return_curves import draw_return_curves
 from reproduction.chapter3.learning import grid_tasks
 from reproduction.chapter3.learning.grid_tasks import PERCEPT, PLACE, PLAIN, Problem, Trained
 
@@ -81,3 +83,13 @@ def check(settings: Mapping) -> None:
     density = settings["density"]
     if len(density) != 2 or not 0 <= density[0] <= density[1] < 1:
         raise InputError(f"density must be two shares of obstacles, rising, got {density}")
+
+
+METHODS = {
+    "q_learning": ("Q-learning", "q-learning"),
+    "qsap": ("ε-QSAP, from the lattice", "eps-QSAP"),
+    "qpap": ("ε-QPAP, from noise mazes", "eps-QPAP"),
+}
+
+draw = partial(draw_return_curves, methods=METHODS)
+"""Figure of claim C3.3: the thesis's Figure 3.5, returns of ε-QPAP, ε-QSAP and Q-learning in noise mazes."""

@@ -10,9 +10,11 @@ import numpy as np
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.core.streams import stream
+from lifelore.figures.style import BLUE, GREEN, GREY, VERMILION, Figure, new_figure
 from reproduction.chapter3.c3_04_factory_priors.knowledge import expert_actions, incorrect_actions, invariances
 from reproduction.chapter3.factory import comparison, learning
 from reproduction.chapter3.factory.comparison import UNIFORM, Comparison, is_default, summary
+from reproduction.chapter3.factory.figure import caption, draw_rewards
 from reproduction.chapter3.factory.learning import LEARNT, N_ACTIONS, Problem, contexts_of
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.grid import Cell, Grid, run_grid
@@ -112,3 +114,27 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         for cap in settings["max_steps"]
         for method in METHODS
     ]
+
+
+LOOKS = {
+    "uniform": ("uniform prior", GREY),
+    "learnt": ("learnt prior", BLUE),
+    "expert": ("expert prior", GREEN),
+    "incorrect": ("incorrect prior", VERMILION),
+}
+
+
+def draw(result: Mapping) -> Figure:
+    """Figure of claim C3.4: learning with each prior, episodes to their end and cut off.
+
+    A panel for the default, and one for the first other cap of an episode's steps.
+    """
+    settings = result["settings"]
+    caps = settings["max_steps"][:2]
+    figure = new_figure(4.9 * len(caps), 4.0)
+    for axes, cap in zip(figure.subplots(1, len(caps), squeeze=False)[0], caps, strict=True):
+        rows = [row for row in result["rows"] if row["max_steps"] == cap]
+        draw_rewards(axes, result, rows, LOOKS, settings["episodes"][0], f"episodes of at most {cap:,} steps")
+        axes.legend(loc="lower right")
+    figure.supxlabel(f"{caption(settings)}.", fontsize=8, color=GREY)
+    return figure

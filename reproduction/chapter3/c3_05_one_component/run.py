@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
+from lifelore.figures.style import BLUE, GREY, INK, Axes
 from reproduction.chapter3.factory import comparison, learning
 from reproduction.chapter3.factory.comparison import UNIFORM, is_default
 from reproduction.chapter3.factory.learning import LEARNT, problem_of, tasks_of, tried_actions, with_pseudo_count
@@ -20,6 +21,8 @@ from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.grid import Cell, Grid
 from reproduction.engine.learning_run import learnt
 from reproduction.engine.records import curve_of, having, nested, values_of
+from reproduction.figures.curves import draw_curves
+from reproduction.figures.panels import panels
 
 SOURCES = ("exact", "learnt")
 N_COMPONENTS = 9
@@ -148,3 +151,32 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     }
     found["optimal"] = np.array([result["optimal"] for result in own])
     return [{"curve_of": name, **curve_of(values)} for name, values in found.items()]
+
+
+LOOKS = {
+    "learnt": ("accumulated prior", {"color": BLUE}),
+    "uniform": ("from scratch", {"color": GREY}),
+    "optimal": ("optimal", {"color": INK, "linestyle": (0, (1, 2))}),
+}
+
+
+@panels(6.4, 4.2, grid="")
+def draw(result: Mapping, axes: Axes) -> None:
+    """Figure of C3.5, and of C3.6: reward of an episode against the number of prior tasks.
+
+    The figure from the result of C3.5 or C3.6.
+    """
+    settings, rows = result["settings"], {row["curve_of"]: row for row in result["rows"]}
+    series = {label: rows[name] for name, (label, _) in LOOKS.items()}
+    series["optimal"] = {"mean": rows["optimal"]["mean"]}
+    draw_curves(
+        axes, np.arange(len(rows["optimal"]["mean"])), series, looks=dict(LOOKS.values()),
+        xlabel="number of prior tasks", ylabel="average reward of an episode", legend=False,
+    )  # fmt: skip
+    axes.set_xlim(0, settings["prior_tasks"])
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
+    axes.legend(loc="center right")
+    axes.figure.supxlabel(
+        f"{settings['runs']} runs, {settings['episodes']} episodes a task; shaded: one standard deviation.",
+        fontsize=8, color=GREY,
+    )  # fmt: skip

@@ -11,20 +11,12 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate, mean_estimate
 from reproduction.chapter3.c3_05_one_component import run as one_component
-from reproduction.chapter3.c3_05_one_component.figure import draw
-from reproduction.chapter3.c3_05_one_component.run import (
-    Sequences,
-    cells,
-    grid_of,
-    rows,
-    run_cell,
-    shared,
-    windows,
-)
+from reproduction.chapter3.c3_05_one_component.run import Sequences, grid_of, windows
 from reproduction.engine.grid import Cell
 from reproduction.engine.records import having
 
-__all__ = ["cells", "check", "draw", "measure", "readings", "rows", "run_cell", "shared"]
+cells, run_cell, shared = one_component.cells, one_component.run_cell, one_component.shared
+rows, draw = one_component.rows, one_component.draw
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:

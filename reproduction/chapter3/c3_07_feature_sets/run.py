@@ -5,11 +5,14 @@ Thesis: §3.4.4, §3.4.5, Figure 3.11.
 """
 
 from collections.abc import Callable, Mapping
+from functools import partial
 
 from lifelore.core.learning.q_learning import Rows
 from lifelore.domains.factory.contexts import PHI
+from lifelore.figures.style import GREY, VERMILION, colour_of
 from reproduction.chapter3.factory import comparison, modified_tasks
 from reproduction.chapter3.factory.comparison import UNIFORM
+from reproduction.chapter3.factory.figure import one_panel
 from reproduction.chapter3.factory.learning import Problem, rows_of, with_pseudo_count
 from reproduction.engine.grid import Cell, Grid
 
@@ -46,3 +49,16 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 
 measure, readings, rows = comparison.functions_of(grid_of, METHODS, lambda found, cell: found.shares(cell, PAIRS))
+
+
+LOOKS = {
+    "uniform": ("uniform prior", GREY),
+    "state": ("state prior", VERMILION),
+    "phi1": ("φ1: own cell, Items", colour_of("phi1")),
+    "phi2": ("φ2: N, S, E, W", colour_of("phi2")),
+    "phi3": ("φ3: φ1 and φ2", colour_of("phi3")),
+    "phi4": ("φ4: 3×3 cells, Items", colour_of("phi4")),
+}
+
+draw = partial(one_panel, looks=LOOKS, plain=("state", "phi1", "phi2", "phi4"))
+"""Figure of claim C3.7: rewards with priors over four sets of features, over states, and without a prior."""

@@ -16,11 +16,14 @@ from lifelore.action.features.feature_selection import independent_features
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.domains.factory.contexts import PHI
+from lifelore.figures.style import GREY, Axes, colour_of
 from reproduction.chapter3.factory import comparison, modified_tasks
 from reproduction.chapter3.factory.learning import N_ACTIONS, Problem, contexts_of
-from reproduction.chapter3.factory.modified_tasks import CARDINALS, FULL_SET
+from reproduction.chapter3.factory.modified_tasks import CARDINALS, FEATURES, FULL_SET, features_in_words
 from reproduction.engine.grid import Cell, Grid
 from reproduction.engine.records import having, nested
+from reproduction.figures.interval_bars import draw_interval_bars
+from reproduction.figures.panels import panels
 
 KEYS = ("policies", "over", "actions")
 GAPS = {"gap_phi4": ("phi4", "phi4"), "gap_phi3": ("phi3", "phi3"), "gap_phi2_to_phi1": ("phi2", "phi1")}
@@ -110,3 +113,27 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         for phi, names in PHI.items()
         for name in names
     ]
+
+
+COLOURS = {phi.replace("phi", "φ"): colour_of(phi) for phi in PHI}
+TICKS = features_in_words(FEATURES)
+
+
+@panels(8.0, 3.8)
+def draw(result: Mapping, axes: Axes) -> None:
+    """Figure of claim C3.8: how much entropy each feature saves in each set of features.
+
+    Bars of each feature, one for each set that contains it.
+    """
+    number = {(row["set"], row["feature"]): row for row in result["rows"]}
+    groups = {phi.replace("phi", "φ"): [number.get((phi, feature)) for feature in FEATURES] for phi in PHI}
+    draw_interval_bars(
+        axes, TICKS, groups, colours=COLOURS, horizontal=False, words=None,
+        label="Δ, bits lost without the feature",
+    )  # fmt: skip
+    axes.axhline(0, color=GREY, linewidth=0.8)
+    axes.legend(loc="upper right", ncols=4)
+    axes.figure.supxlabel(
+        f"{result['settings']['runs']} runs; lines: 95 % interval. N to SE: cells around the robot's.",
+        fontsize=8, color=GREY,
+    )  # fmt: skip

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, ratio_estimate
+from lifelore.figures.style import BLUE, GREY, PURPLE, Axes
 from reproduction.chapter3.factory import comparison
 from reproduction.chapter3.factory.comparison import UNIFORM
 from reproduction.chapter3.factory.modified_tasks import FULL_SET, problem_of
@@ -18,6 +19,8 @@ from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.grid import Cell, Grid
 from reproduction.engine.learning_run import learnt
 from reproduction.engine.records import Record, curve_of, nested, values_of
+from reproduction.figures.curves import draw_curves
+from reproduction.figures.panels import panels
 
 METHODS = (UNIFORM, FULL, SELECTED)
 PARTS = ("first", "last")
@@ -108,3 +111,37 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         for part in PARTS
         for method in METHODS
     ]
+
+
+LOOKS = {
+    "uniform": ("uniform prior", GREY),
+    "full": ("all ten features", PURPLE),
+    "selected": ("selected features", BLUE),
+}
+DASHES = {"first": "-", "last": (0, (4, 2))}
+
+
+@panels(6.8, 4.4, grid="")
+def draw(result: Mapping, axes: Axes) -> None:
+    """Figure of claim C3.9: reward in the first and the last episode of each task.
+
+    Two bundles of lines: first episodes, and the last ones above them.
+    """
+    settings, series, looks = result["settings"], {}, {}
+    for row in result["rows"]:
+        words, colour = LOOKS[row["curve_of"]]
+        label = f"{words}, episode {1 if row['part'] == 'first' else settings['episodes']}"
+        # Shades of both bundles would hide one another.
+        series[label] = row if row["part"] == "first" else {"mean": row["mean"]}
+        looks[label] = {"color": colour, "linewidth": 1.5, "linestyle": DASHES[row["part"]]}
+    draw_curves(
+        axes, None, series, looks=looks, xlabel="task", ylabel="reward of an episode", legend=False,
+    )  # fmt: skip
+    lowest = min(np.min(row["mean"]) for row in result["rows"])
+    axes.set(xlim=(1, settings["tasks"]), ylim=(1.1 * lowest, -0.06 * lowest))
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
+    axes.figure.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=2)
+    runs = min(DRAWN, settings["runs"])
+    axes.figure.supxlabel(
+        f"{runs} runs; shaded: one standard deviation of the first episodes.", fontsize=8, color=GREY
+    )

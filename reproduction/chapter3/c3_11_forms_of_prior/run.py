@@ -8,6 +8,7 @@ softmax is that of the proportions. Thesis: §3.2.2.1, §3.4.7, Figure 3.15.
 """
 
 from collections.abc import Callable, Mapping
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +17,10 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.learning.q_learning import Rows
 from lifelore.core.metrics import Estimate, ratio_estimate
 from lifelore.core.streams import stream
+from lifelore.figures.style import BLUE, GREEN, VERMILION
 from reproduction.chapter3.factory import comparison, modified_tasks
 from reproduction.chapter3.factory.comparison import UNIFORM, Comparison
+from reproduction.chapter3.factory.figure import one_panel
 from reproduction.chapter3.factory.learning import Problem, rows_of, with_pseudo_count
 from reproduction.engine.grid import Cell, Grid
 
@@ -77,3 +80,13 @@ def _numbers(found: Comparison, cell: Mapping) -> dict[str, Estimate]:
 
 
 measure, readings, rows = comparison.functions_of(grid_of, METHODS, _numbers)
+
+
+LOOKS = {
+    "softmax": ("softmax", VERMILION),
+    "proportion": ("proportions", BLUE),
+    "dirichlet": ("Dirichlet", GREEN),
+}
+
+draw = partial(one_panel, looks=LOOKS)
+"""Figure of claim C3.11: rewards with three forms of one prior."""

@@ -4,21 +4,79 @@ The thesis's demonstrator was a person. Here people are simulated, each with a s
 knowingly. A run draws training factories with lists of components; each is demonstrated once, by the people in
 turn, and solved exactly for the self-trained prior. A trajectory counts an action for each visit, a policy its
 tied best actions in every state. All priors meet the same factories, lists and random numbers.
+A person otherwise acts at random:
+
+    π(a | s) = skill · [a is best in s] / (number of best in s) + (1 - skill) / |A|
+
 Thesis: §3.4.8, Figure 3.16.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache
+from functools import cache, partial
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from lifelore.action.demonstrations.demonstrations import Demonstration, count_demonstrations
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.learning.q_learning import Rows
+from lifelore.core.mdp import TERMINAL, Tables
+from lifelore.core.planning.planning import checked_best
 from lifelore.core.streams import stream
-from reproduction.chapter3.c3_12_demonstrated_priors.simulated_person import simulated_demonstration
+from lifelore.figures.style import BLUE, GREEN, GREY
 from reproduction.chapter3.factory import comparison, modified_tasks
 from reproduction.chapter3.factory.comparison import UNIFORM
+from reproduction.chapter3.factory.figure import one_panel
 from reproduction.chapter3.factory.learning import N_ACTIONS, Problem, contexts_of, exact_prior, rows_of
 from reproduction.engine.grid import Cell, Grid
+
+
+def person_policy(best: ArrayLike, skill: float) -> NDArray[np.float64]:
+    """Action probabilities of a person, (n_states, n_actions), rows sum to 1; uniform without best action."""
+    best = checked_best(best)
+    known = best | ~best.any(axis=1, keepdims=True)
+    return skill * known / known.sum(axis=1, keepdims=True) + (1 - skill) / best.shape[1]
+
+
+def simulated_demonstration(
+    tables: Tables,
+    best: ArrayLike,
+    skill: float,
+    generator: np.random.Generator,
+    *,
+    task: str,
+    agent: str,
+    most_steps: int,
+) -> Demonstration | None:
+    """One demonstration from a start to the end of the episode; None if it takes more than `most_steps` steps.
+
+    Parameters
+    ----------
+    tables : Tables
+    best : (n_states, n_actions) bool
+        Best or tied-best actions.
+    skill : float
+        In [0, 1]: 0 chooses uniformly, 1 is an expert.
+    generator : numpy generator
+    task, agent : str
+        Names in the demonstration.
+    most_steps : int
+        Number of steps after which the person gives up, at least 1.
+    """
+    cum, outcome_cum = np.cumsum(person_policy(best, skill), axis=1), tables.by_pair.outcome_cum
+    state = int(generator.choice(tables.starts))
+    states, actions = [], []
+    for _ in range(most_steps):
+        choice, outcome = generator.random(2)
+        action = int((choice * cum[state, -1] >= cum[state, :-1]).sum())
+        k = int((outcome >= outcome_cum[state, action, :-1]).sum())
+        states.append(state)
+        actions.append(action)
+        if tables.event[state, action, k] & TERMINAL:
+            return Demonstration(task, agent, np.array(states, np.int64), np.array(actions, np.int64))
+        state = int(tables.next_state[state, action, k])
+    return None
+
 
 SELF, SHOWN = "self-trained", "shown"
 METHODS = (UNIFORM, SELF, SHOWN)
@@ -80,3 +138,13 @@ def from_shown(known: Sequence[Problem], shown: Sequence[Demonstration | None], 
 
 
 measure, readings, rows = comparison.functions_of(grid_of, METHODS, lambda found, cell: found.shares(cell, PAIRS))
+
+
+LOOKS = {
+    "uniform": ("uniform prior", GREY),
+    "shown": ("prior from demonstrations (simulated person)", GREEN),
+    "self-trained": ("self-trained prior", BLUE),
+}
+
+draw = partial(one_panel, looks=LOOKS)
+"""Figure of claim C3.12: learning with priors demonstrated by simulated people, and with self-trained priors."""

@@ -13,11 +13,14 @@ from lifelore.action.advice.advisor import BETTER, Advisor
 from lifelore.action.advice.goal_model import extend_goal_models
 from lifelore.core.metrics import Estimate
 from lifelore.domains.advice.explorers import EXPLORERS
+from lifelore.figures.style import INK, Axes
 from reproduction.chapter3.advice import mazes
 from reproduction.chapter3.advice.learning import errand_tables, final_reward, learner_schedule, reached_by_learner
-from reproduction.chapter3.advice.mazes import AGENTS, KAPPA, WINDOW, Maze
+from reproduction.chapter3.advice.mazes import ADVICE_COLOURS, AGENT_WORDS, AGENTS, KAPPA, WINDOW, Maze
 from reproduction.chapter3.learning.schedules import PRINTED
 from reproduction.engine.records import having
+from reproduction.figures.interval_bars import draw_interval_bars
+from reproduction.figures.panels import panels
 
 cells = mazes.maze_cells
 LEARNER = "q_learning"
@@ -107,3 +110,38 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         numbers = {way: mazes.maze_estimate([of[agent] for of in each]).to_dict() for way, each in ways.items()}
         found.append({"agent": agent, **numbers})
     return found
+
+
+WAYS = dict(zip(("alone", "advised", "apart"), ADVICE_COLOURS, strict=True))
+TABLE = {
+    "random": (50, 900),
+    "avoid": (50, 750),
+    "left": (150, 750),
+    "bug": (100, 800),
+    "q_learning": (150, 1000),
+    "optimal": (1000, 1000),
+}
+"""Table 3.1: reward without advice and with it."""
+
+
+@panels(6.8, 4.6, grid="x")
+def draw(result: Mapping, axes: Axes) -> None:
+    """Figure of claim C3.15: the thesis's Table 3.1 as bars, the printed rewards beside ours.
+
+    The figure from the result: agents downwards.
+    """
+    rows = result["rows"]
+    groups = {label: [row.get(way) for row in rows] for way, label in WAYS.items()}
+    names = [AGENT_WORDS[row["agent"]] for row in rows]
+    draw_interval_bars(
+        axes, names, groups, colours=ADVICE_COLOURS, words=None, label="mean reward, of 1000", legend=False
+    )
+    height = 0.8 / len(groups)
+    for place, row in enumerate(rows):
+        for way, reward in enumerate(TABLE[row["agent"]]):
+            label = "thesis" if place == way == 0 else None
+            axes.plot(
+                reward, place + (way - 1) * height, "D", ms=5, mfc="none", color=INK, clip_on=False, label=label
+            )
+    axes.set_xlim(0, 1000)
+    axes.figure.legend(*axes.get_legend_handles_labels(), loc="outside lower left", ncols=4)

@@ -12,13 +12,16 @@ from numpy.typing import NDArray
 
 from lifelore.action.advice.advisor import Advisor
 from lifelore.core.metrics import Estimate
+from lifelore.figures.style import Axes
 from reproduction.chapter3.advice import mazes
 from reproduction.chapter3.advice.learning import errand_tables, final_reward, learner_schedule, reached_by_learner
-from reproduction.chapter3.advice.mazes import Maze
+from reproduction.chapter3.advice.mazes import ADVICE_COLOURS, Maze
 from reproduction.chapter3.learning.grid_tasks import block_curve
 from reproduction.chapter3.learning.schedules import Epsilon
 from reproduction.engine.grid import combinations
 from reproduction.engine.records import having, in_blocks
+from reproduction.figures.curves import draw_curves
+from reproduction.figures.panels import panels
 
 cells = mazes.maze_cells
 HANDFUL = 10
@@ -99,3 +102,18 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         for way in WAYS
         if (blocks := [blocks for result in own for blocks in result[f"curve_{way}"]])
     ]
+
+
+LABELS = {"plain": "without advice", "advised": "with advice"}
+
+
+@panels(6.4, 3.6)
+def draw(result: Mapping, axes: Axes) -> None:
+    """Figure of claim C3.16: the thesis's Figure 3.22, rewards of Q-learning with advice and without.
+
+    The figure from the result: tasks of the first mazes, with one standard deviation.
+    """
+    series = {LABELS[row["curve_of"]]: row for row in result["rows"]}
+    looks = {label: {"color": ADVICE_COLOURS[label]} for label in series}
+    draw_curves(axes, None, series, looks=looks, xlabel="episode", ylabel="reward of an episode")
+    axes.set(ylim=(0, 1000), xlim=(0, result["settings"]["episodes"]))

@@ -15,12 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate
+from lifelore.figures.style import GREY, Axes
 from reproduction.chapter3.advice import mazes
 from reproduction.chapter3.advice.learning import learner_schedule
-from reproduction.chapter3.advice.mazes import AGENTS, KAPPA, Maze
+from reproduction.chapter3.advice.mazes import AGENT_COLOURS, AGENT_WORDS, AGENTS, KAPPA, Maze
 from reproduction.chapter3.learning.schedules import PRINTED
 from reproduction.engine.learning_run import greedy_probs, learnt
 from reproduction.engine.records import having
+from reproduction.figures.panels import panels
 
 cells = mazes.maze_cells
 EARLY, LATE = "q_early", "q_late"
@@ -109,3 +111,21 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         for result in results
         for agent, walks in result["drawn"].items()
     ]
+
+
+@panels(6.4, 3.8)
+def draw(result: Mapping, axes: Axes) -> None:
+    """Figure of claim C3.17: the thesis's Figure 3.23, advice in 100 steps by κ.
+
+    The figure from the result: walks of one maze, with one standard deviation.
+    """
+    kappas = kappas_of(result["settings"])
+    for place, row in enumerate(result["rows"]):
+        agent, shift = row["curve_of"], 0.004 * kappas[-1] * (place - 2)
+        axes.errorbar(
+            [kappa + shift for kappa in kappas], row["mean"], row["deviation"], color=AGENT_COLOURS[agent],
+            label=AGENT_WORDS[agent], lw=1.5, elinewidth=0.8, marker="o", ms=3,
+        )  # fmt: skip
+    axes.axvline(KAPPA, color=GREY, lw=0.9, ls=(0, (4, 3)))
+    axes.set(xlabel="κ (nats)", ylabel="advised steps in 100", ylim=(0, 104))
+    axes.legend()

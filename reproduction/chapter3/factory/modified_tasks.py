@@ -20,6 +20,19 @@ from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.grid import Cell, Grid, run_grid
 from reproduction.engine.learning_run import curves_of
 
+FEATURE_WORDS = {
+    "PosUM": "N", "PosML": "W", "PosMR": "E", "PosDM": "S", "PosMM": "own cell",
+    "PosUL": "NW", "PosUR": "NE", "PosDL": "SW", "PosDR": "SE",
+    "Items": "items", "Noise1": "noise 1", "Noise2": "noise 2",
+}  # fmt: skip
+"""A cell around the robot goes by its direction from the robot's own cell."""
+
+
+def features_in_words(names: Sequence[str]) -> list[str]:
+    """The features as ticks name them."""
+    return [FEATURE_WORDS[name] for name in names]
+
+
 FULL_SET = FeatureSet(FEATURE_NAMES, FEATURE_SIZES)
 """φ4: the ten features of the modified factory."""
 CARDINALS = PHI["phi2"]

@@ -159,6 +159,11 @@ def _ratios(kinds: NDArray[np.int64], named: Sequence[NDArray[np.int8]]) -> Floa
     return np.array([sizes[steps[:, kinds == kind]].mean(axis=1) / sizes[kind] for kind in range(N_TYPES)])
 
 
+def readings_by(numbers: Numbers) -> Callable[[Mapping, Sequence[Mapping]], Iterator[tuple[dict, dict]]]:
+    """The function ``readings`` of a claim: those of its `numbers` in every game and choice."""
+    return lambda settings, results: readings_of(results, numbers)
+
+
 def readings_of(results: Sequence[Mapping], numbers: Numbers) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """Every game and normalisation, then the default with each choice of `OPEN` made otherwise."""
     default = dict.fromkeys(OPEN, "default")

@@ -7,18 +7,13 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
-from lifelore.domains.golf.golf import Golf
-from reproduction.chapter4.golf.rounds import (
-    WOOD,
-    draw_group,
-    errors_of,
-    exact_library,
-    learnt_library,
-    play_greedily,
-)
+from lifelore.domains.golf.golf import CLUBS, Golf
+from lifelore.figures.style import BLUE, GREEN, GREY, INK, LIGHT, ORANGE, PURPLE, VERMILION, Axes
+from reproduction.chapter4.golf import rounds
 from reproduction.engine.records import having
+from reproduction.figures.panels import panels
 
-FIRST = {None: "greedy", WOOD: "club 1"}
+FIRST = {None: "greedy", rounds.WOOD: "club 1"}
 """The first club: the rule's choice, or club 1 as in the worked example."""
 
 
@@ -36,12 +31,12 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 
 def _play(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict:
-    library = exact_library()
+    library = rounds.exact_library()
     if cell["samples"]:
         training = stream(seed, "training shots", cell["samples"], group)
-        library = learnt_library(training, cell["samples"], settings["pseudo_count"])
-    holes = draw_group(settings, seed, group)
-    found = play_greedily(library, *holes, stream(seed, "golfer", group), cell["first"])
+        library = rounds.learnt_library(training, cell["samples"], settings["pseudo_count"])
+    holes = rounds.draw_group(settings, seed, group)
+    found = rounds.play_greedily(library, *holes, stream(seed, "golfer", group), cell["first"])
     return {
         "error": np.abs(found.error).mean(axis=0).round(5).tolist(),
         "entropy": found.entropy.mean(axis=0).round(6).tolist(),
@@ -50,10 +45,10 @@ def _play(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict:
 
 def _play_clubs(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict:
     """Mean misses of single clubs, and of the best club for each hole, with the second shot's luck."""
-    distance, luck = draw_group(settings, seed, group)
+    distance, luck = rounds.draw_group(settings, seed, group)
 
     def miss(clubs: np.ndarray) -> float:
-        return round(float(np.abs(errors_of(clubs, distance, luck[:, 1])).mean()), 5)
+        return round(float(np.abs(rounds.errors_of(clubs, distance, luck[:, 1])).mean()), 5)
 
     golf = Golf()
     best = golf.mean_at(distance).argmax(axis=1)
@@ -82,3 +77,29 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     greedy = having(results[:-1], samples=None, first=None)[0]
     kept = {"error": greedy["error"], "entropy": greedy["entropy"], **results[-1]}
     return [{key: np.mean(kept[key], axis=0).round(4).tolist() for key in ("error", "entropy", "club", "best")}]
+
+
+CLUB_COLOURS = (BLUE, GREEN, ORANGE, PURPLE)
+
+
+@panels(7.6, 3.9, grid="")
+def draw(result: Mapping, axes: Axes) -> None:
+    """Golf by shot: mean distance to the hole beside single clubs, and entropy of the belief (Figure 4.4).
+
+    Distance on the left axis with a level for each club, entropy on the right axis.
+    """
+    (row,), settings = result["rows"], result["settings"]
+    shots = range(1, settings["shots"] + 1)
+    axes.axhspan(10, 15, color=LIGHT, alpha=0.7, lw=0)
+    axes.text(shots[-1], 15.4, "10–15 yards", ha="right", va="bottom", fontsize=8, color=GREY)
+    for name, colour, missed in zip(CLUBS, CLUB_COLOURS, row["club"], strict=True):
+        axes.axhline(missed, color=colour, lw=1, ls=(0, (1, 1.5)), label=f"only the {name}")
+    axes.axhline(row["best"], color=INK, lw=1, ls=(0, (4, 2)), label="best club for each hole")
+    axes.plot(shots, row["error"], "o-", color=BLUE, label="greedy policy reuse")
+    axes.set(xlabel="shot", ylabel="mean distance to the hole (yards)", ylim=(0, None))
+    right = axes.twinx()
+    right.plot(shots, row["entropy"][:-1], "s-", color=VERMILION, ms=4, label="entropy (right axis)")
+    right.set(ylim=(0, None), ylabel="entropy of the belief before the shot (nats)")
+    right.spines["right"].set_visible(True)
+    axes.figure.legend(loc="outside right upper")
+    axes.set_title(f"{settings['groups']} × {settings['holes']} unknown holes, exact models")

@@ -13,13 +13,17 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.pacman.pacman import STRATEGIES, PacmanMaze
+from lifelore.figures.style import Axes
 from lifelore.interaction.baselines.probabilistic_policy_reuse import ProbabilisticPolicyReuse
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection import BeliefSampling
 from reproduction.chapter4.c4_04_pacman import pacman_library
 from reproduction.chapter4.c4_04_pacman.pacman_library import GREATEST, Arena, falling_schedule
+from reproduction.chapter4.reuse.looks import look_of
 from reproduction.chapter4.reuse.many_tasks import play_rule
 from reproduction.engine.records import in_blocks
+from reproduction.figures.curves import draw_curves
+from reproduction.figures.panels import panels
 
 Array = NDArray[np.float64]
 RETURNS, LASTING = "a hundred returns", "every policy from then on"
@@ -153,3 +157,20 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         mean, deviation = (of.round(1).tolist() for of in (curves.mean(axis=0), curves.std(axis=0)))
         found.append({"method": label, "tasks": len(tasks), "mean": mean, "deviation": deviation})
     return [*found, {"best": round(float(np.mean([task["best"] for task in tasks])), 2)}]
+
+
+@panels(7.2, 3.9)
+def draw(result: Mapping, axes: Axes) -> None:
+    """Returns of policy reuse, PRQ and Q-learning by episode (Figure 4.8).
+
+    Means of twenty tasks, one standard deviation shaded.
+    """
+    (*curves, level), episodes = result["rows"], result["settings"]["episodes"]
+    points = len(curves[0]["mean"])
+    draw_curves(
+        axes, (np.arange(points) + 0.5) * episodes / points, {row["method"]: row for row in curves},
+        looks={row["method"]: look_of(row["method"]) for row in curves}, xlabel="episode", ylabel="return",
+        title=f"Pacman, {curves[0]['tasks']} tasks", level=(level["best"], "library's best"), legend=False,
+    )  # fmt: skip
+    axes.set_xlim(0, episodes)
+    axes.figure.legend(loc="outside right upper")

@@ -3,10 +3,13 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 from lifelore.core.metrics import Estimate
+from lifelore.figures.style import Axes
+from reproduction.chapter4.reuse.looks import draw_linear
 from reproduction.chapter4.reuse.many_tasks import grouped_mean, grouped_quantile
 from reproduction.chapter4.reuse.rules import FORMS, PI_PRINTED, RULES, STANDARD, in_form
 from reproduction.chapter4.surveillance.runs import DEFAULT, READ, by_group, by_method, each_place, reserve_cells
 from reproduction.chapter4.surveillance.runs import run_method as run_cell
+from reproduction.figures.panels import panels
 
 __all__ = ["cells", "readings", "rows", "run_cell", "shared"]
 shared = READ
@@ -50,3 +53,18 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         {"method": name, "entropy": found[name]["entropy"], "regret": found[name]["curves"][0]["mean"]}
         for name in SHOWN
     ]
+
+
+@panels(9.2, 3.8, 1, 2, grid="")
+def draw(result: Mapping, left: Axes, right: Axes) -> None:
+    """Six ways to select among 68 policies: entropy of the belief and regret after each episode (Figure 4.10).
+
+    The thesis's panels (a) and (b): means of ten tasks.
+    """
+    rows, settings = result["rows"], result["settings"]
+    draw_linear(left, {row["method"]: row["entropy"] for row in rows}, 0, title="(a) Entropy of the belief (nats)")
+    draw_linear(right, {row["method"]: row["regret"] for row in rows}, 1, title="(b) Regret")
+    for axes in (left, right):
+        axes.set_xlabel("episode")
+    left.figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=len(rows))
+    left.figure.suptitle(f"Surveillance, {settings['tasks']} random tasks, learnt models", x=0.01, ha="left")

@@ -6,10 +6,13 @@ from itertools import product
 import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate
+from lifelore.figures.style import INK, Axes
+from reproduction.chapter4.reuse.looks import look_of
 from reproduction.chapter4.reuse.rules import FORMS, PI_PRINTED, RULES, STANDARD, in_form
-from reproduction.chapter4.surveillance.runs import DEFAULT, READ, by_method, each_place, reserve_cells
+from reproduction.chapter4.surveillance.runs import AFTER, DEFAULT, READ, by_method, each_place, reserve_cells
 from reproduction.chapter4.surveillance.runs import run_method as run_cell
 from reproduction.engine.estimates import share_of
+from reproduction.figures.panels import panels
 
 __all__ = ["cells", "measure", "readings", "rows", "run_cell", "shared"]
 shared = READ
@@ -82,3 +85,27 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         for name in (*PRINTED, "PI, printed")
         for of in [deviations(found[name], REGRETS[0])]
     ]
+
+
+@panels(9.2, 4.6, 2, 3, sharey=True)
+def draw(result: Mapping, *every: Axes) -> None:
+    """Printed standard deviations beside those of many groups of ten tasks (Table 4.3).
+
+    A panel a rule: median and middle 95 % of groups, PI also as printed (dashed); diamonds: the table.
+    """
+    settings = result["settings"]
+    places = range(len(AFTER))
+    for axes, (name, printed) in zip(every, PRINTED.items(), strict=True):
+        for row in result["rows"]:
+            if row["method"].partition(",")[0] == name:
+                low, middle, high = row["quantiles"]
+                look = look_of(row["method"])
+                axes.fill_between(places, low, high, color=look["color"], alpha=0.18, lw=0)
+                axes.plot(places, middle, **look)
+        axes.plot(places, printed, "D", color="white", mec=INK, ms=6, mew=1.2)
+        axes.set_xticks(places, [str(k) for k in AFTER])
+        axes.set(title=name, ylim=(0, None))
+    figure = every[0].figure
+    figure.supxlabel("after episode (diamonds: the printed table; band: middle 95 % of groups)", fontsize=9)
+    figure.supylabel("standard deviation of regret", fontsize=9)
+    figure.suptitle(f"{settings['groups']} groups of {settings['tasks']} tasks, learnt models", x=0.01, ha="left")

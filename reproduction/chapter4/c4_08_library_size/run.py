@@ -12,10 +12,12 @@ import numpy as np
 from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.surveillance.surveillance import Surveillance
+from lifelore.figures.style import BLUE, SKY, Axes
 from lifelore.interaction.reuse.regret import library_regret
 from reproduction.chapter4.reuse.many_tasks import EXACT, LEARNT, play_rule
 from reproduction.chapter4.reuse.rules import RULES
 from reproduction.chapter4.surveillance.runs import draw_tasks, library_of
+from reproduction.figures.panels import panels
 
 EVERY = tuple(product((LEARNT, EXACT), ("EI", "EI, printed")))
 """Models and rules; the first is the default."""
@@ -92,3 +94,20 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     mean = _regret(results, *EVERY[0]).mean(axis=1).round(2)
     counts, shares = sorted(set(settings["episodes"])), sorted(set(settings["shares"]))
     return [{"episodes": k, "shares": shares, "regret": of.tolist()} for k, of in zip(counts, mean.T, strict=True)]
+
+
+@panels(6.4, 3.8)
+def draw(result: Mapping, axes: Axes) -> None:
+    """Mean regret by size of the library and number of episodes (Figure 4.12).
+
+    A line for each number of episodes over the size of the library.
+    """
+    from matplotlib.colors import LinearSegmentedColormap
+
+    rows = result["rows"]
+    shades = LinearSegmentedColormap.from_list("episodes", [SKY, BLUE, "#0b2a4a"])(np.linspace(0, 1, len(rows)))
+    for row, shade in zip(rows, shades, strict=True):
+        axes.plot([100 * s for s in row["shares"]], row["regret"], "o-", color=shade, ms=4, label=row["episodes"])
+    axes.set(ylim=(0, None), xlabel="size of the library (% of 68 types)", ylabel="average episodic regret")
+    axes.set_title(f"BPR-EI, {result['settings']['trials']} random tasks")
+    axes.figure.legend(*axes.get_legend_handles_labels(), title="episodes", loc="outside right upper")

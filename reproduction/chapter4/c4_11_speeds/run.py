@@ -7,11 +7,15 @@ from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
-from lifelore.domains.ball_game.ball_game import SPEEDS
+from lifelore.domains.ball_game.ball_game import SIZES, SPEEDS
+from lifelore.figures.style import Axes
 from reproduction.chapter4.ball_game.games import Game, choices
 from reproduction.chapter4.ball_game.games import check_games as check
+from reproduction.chapter4.ball_game.looks import size_lines
 from reproduction.chapter4.ball_game.play import Players, play_speeds, scale_of
 from reproduction.engine.estimates import exact_value
+from reproduction.figures.curves import draw_curves
+from reproduction.figures.panels import panels
 
 __all__ = ["cells", "check", "readings", "rows", "run_cell"]
 SLOW, FAST = [0, 1], [3, 4]
@@ -62,3 +66,24 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     loss = losses(results[0], settings["normalisations"][0])
     error = 1.96 * loss.std(axis=-1) / np.sqrt(loss.shape[-1])
     return [{"loss": np.round(loss.mean(axis=-1), 4).tolist(), "error": np.round(error, 4).tolist()}]
+
+
+SHOWN = (2, 20, 60)
+"""The thesis shows three representative sizes and does not name them."""
+
+
+@panels(8.4, 2.9, 1, len(SHOWN))
+def draw(result: Mapping, *every: Axes) -> None:
+    """Loss by speed for three sizes of the ball (Figure 4.15).
+
+    A panel for each size, as their losses differ tenfold; a ring at the best speed.
+    """
+    row = result["rows"][0]
+    for axes, size in zip(every, SHOWN, strict=True):
+        look = size_lines([size], marker="o", markersize=4)
+        mean, error = (row[key][SIZES.index(size)] for key in ("loss", "error"))
+        draw_curves(axes, SPEEDS, {f"b = {size}": {"mean": mean, "deviation": error}}, looks=look, legend=False)
+        best = min(range(len(mean)), key=mean.__getitem__)
+        axes.plot(SPEEDS[best], mean[best], "o", ms=10, mfc="none", mec=look[f"b = {size}"]["color"], mew=1.5)
+        axes.set(title=f"b = {size}", xlabel="speed z", xticks=SPEEDS, ylim=(0, None))
+    every[0].set_ylabel("mean loss, band 95 %")

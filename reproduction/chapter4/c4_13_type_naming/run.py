@@ -10,12 +10,16 @@ from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.domains.ball_game.ball_game import SIZES
-from reproduction.chapter4.ball_game.games import check_games as check
-from reproduction.chapter4.ball_game.trials import BEAT, SHARED, cells, readings_of, run_cell
+from lifelore.figures.style import GREY, Axes
+from reproduction.chapter4.ball_game import trials
+from reproduction.chapter4.ball_game.games import check_games
+from reproduction.chapter4.ball_game.looks import size_lines
+from reproduction.chapter4.ball_game.trials import BEAT
 from reproduction.engine.estimates import exact_share, exact_value
+from reproduction.figures.curves import draw_curves
+from reproduction.figures.panels import panels
 
-__all__ = ["cells", "check", "readings", "rows", "run_cell", "shared"]
-shared = SHARED
+cells, check, run_cell, shared = trials.cells, check_games, trials.run_cell, trials.SHARED
 
 
 def size_ratio(counts: Sequence[int], size: int) -> Estimate:
@@ -41,7 +45,7 @@ def numbers(result: Mapping, instead: Mapping[str, str]) -> dict[str, Estimate]:
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterable[tuple[dict, dict[str, Estimate]]]:
     """The numbers of every game, and of the first with each other choice that BEAT has."""
-    return (one for one in readings_of(results, numbers) if _is_of_beat(one[0]))
+    return (one for one in trials.readings_of(results, numbers) if _is_of_beat(one[0]))
 
 
 def _is_of_beat(reading: Mapping[str, str]) -> bool:
@@ -54,3 +58,22 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     return [{"size": size, "ratio": ratio} for size, ratio in zip(SIZES, first["ratio"][BEAT], strict=True)] + [
         {"half_of_first": first["half_of_first"]}
     ]
+
+
+@panels(6.4, 3.8)
+def draw(result: Mapping, axes: Axes) -> None:
+    """The most likely size over the true size, step by step of the first episode (Figure 4.17).
+
+    A curve for each true size.
+    """
+    *sizes, last = result["rows"]
+    series = {f"b = {row['size']}": {"mean": row["ratio"]} for row in sizes}
+    draw_curves(axes, None, series, looks=size_lines([row["size"] for row in sizes], linewidth=1.6))
+    axes.axhline(1, color=GREY, linestyle=(0, (4, 2)), linewidth=1)
+    axes.axvline(last["half_of_first"], color=GREY, linewidth=1)
+    axes.annotate(
+        "half of the median\nfirst episode", (last["half_of_first"], 1), (4, -2), va="top", fontsize=8,
+        xycoords=("data", "axes fraction"), textcoords="offset points", color=GREY,
+    )  # fmt: skip
+    axes.set(xlabel="step of the first episode", ylabel="most likely size / true size", ylim=(0, None))
+    axes.legend(title="true size", ncols=2)

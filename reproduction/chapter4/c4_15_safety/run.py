@@ -1,26 +1,16 @@
 """C4.15: BEAT's losses in the last episode, its regret, and how soon it names the type. Thesis: §4.8.5.2."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
 from lifelore.core.metrics import Estimate, ratio_estimate
-from reproduction.chapter4.ball_game.games import check_games as check
-from reproduction.chapter4.ball_game.trials import (
-    BEAT,
-    BEAT_OURS,
-    EXP3,
-    ORACLE,
-    SHARED,
-    STATIC,
-    cells,
-    readings_of,
-    run_cell,
-)
+from reproduction.chapter4.ball_game import trials
+from reproduction.chapter4.ball_game.games import check_games
+from reproduction.chapter4.ball_game.trials import BEAT, BEAT_OURS, EXP3, ORACLE, STATIC
 from reproduction.chapter4.c4_13_type_naming.run import numbers as naming
 
-__all__ = ["cells", "check", "readings", "run_cell", "shared"]
-shared = SHARED
+cells, check, run_cell, shared = trials.cells, check_games, trials.run_cell, trials.SHARED
 
 
 def numbers(result: Mapping, instead: Mapping[str, str]) -> dict[str, Estimate]:
@@ -42,6 +32,4 @@ def numbers(result: Mapping, instead: Mapping[str, str]) -> dict[str, Estimate]:
     return found
 
 
-def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterable[tuple[dict, dict[str, Estimate]]]:
-    """The numbers of every game, and of the first with each other choice."""
-    return readings_of(results, numbers)
+readings = trials.readings_by(numbers)

@@ -1,29 +1,21 @@
 """The six rules of Figure 4.10, in their standard form and as printed, by the names that figures show."""
 
-from lifelore.interaction.selection import (
-    BeliefEntropy,
-    BeliefSampling,
-    EpsilonGreedy,
-    ExpectedImprovement,
-    KnowledgeGradient,
-    ProbabilityOfImprovement,
-    SelectionRule,
-)
+from lifelore.interaction import selection
 
-STANDARD: dict[str, SelectionRule] = {
-    "ε-greedy": EpsilonGreedy(0.3),
-    "sampling": BeliefSampling(),
-    "KG": KnowledgeGradient(candidates="responses"),
-    "BE": BeliefEntropy(),
-    "PI": ProbabilityOfImprovement(),
-    "EI": ExpectedImprovement(of="outcome"),
+STANDARD: dict[str, selection.SelectionRule] = {
+    "ε-greedy": selection.EpsilonGreedy(0.3),
+    "sampling": selection.BeliefSampling(),
+    "KG": selection.KnowledgeGradient(candidates="responses"),
+    "BE": selection.BeliefEntropy(),
+    "PI": selection.ProbabilityOfImprovement(),
+    "EI": selection.ExpectedImprovement(of="outcome"),
 }
 """EI improves the outcome; ε as in the thesis; κ of BE is the range of mean pays."""
-PRINTED: dict[str, SelectionRule] = {
-    "KG, printed": KnowledgeGradient(variant="thesis"),
-    "BE, printed": BeliefEntropy(variant="thesis"),
-    "PI, printed": ProbabilityOfImprovement(variant="thesis"),
-    "EI, printed": ExpectedImprovement(variant="thesis"),
+PRINTED: dict[str, selection.SelectionRule] = {
+    "KG, printed": selection.KnowledgeGradient(variant="thesis"),
+    "BE, printed": selection.BeliefEntropy(variant="thesis"),
+    "PI, printed": selection.ProbabilityOfImprovement(variant="thesis"),
+    "EI, printed": selection.ExpectedImprovement(variant="thesis"),
 }
 RULES = STANDARD | PRINTED
 PI_PRINTED = "PI as printed"

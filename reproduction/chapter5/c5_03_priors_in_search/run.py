@@ -4,14 +4,17 @@ A cell is one maze with a held-out goal. A prior on *places* comes from other go
 *percepts* from other mazes, a goal in each; neither has met the goal in question. What is compared within a maze
 meets the same starts, worlds and payoffs. Searches know the maze. A bandit here is one place of the maze: its arms
 are the moves, and a pull says whether the move is on a shortest way, wrongly in some cases. Thesis: §3.8, §5.2.
+
+Bandits are UCB1 and Thompson sampling, many problems at once. An action prior gives the probability that
+each action is useful in a context. It enters as pseudo-pulls of every arm whose mean payoff is that probability.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
-from typing import NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.search.depth_first import depth_first, preferences
@@ -21,9 +24,63 @@ from lifelore.core.metrics import Estimate, difference_estimate, ratio_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.noise_maze import noise_maze
+from lifelore.interaction.baselines.arm_statistics import ArmBaseline, ArmStatistics
+from lifelore.interaction.baselines.ucb1 import UCB1
 from reproduction.chapter3.learning.grid_tasks import problem_of
-from reproduction.chapter5.c5_03_priors_in_search.bandit import BANDITS, regret
 from reproduction.engine.records import nested, values_of
+
+
+class BetaThompson(ArmBaseline):
+    """Thompson sampling of payoffs in {0, 1}: an arm's value is drawn from Beta(1 + paid, 1 + not paid)."""
+
+    name: ClassVar[str] = "beta"
+
+    def __init__(self, n_policies: int, **common: Any) -> None:
+        super().__init__(n_policies, **common)
+        self.arms = ArmStatistics.empty(self.rows, n_policies)
+
+    def _scores(self) -> NDArray[np.float64]:
+        paid = self.arms.pulls * self.arms.mean
+        return self._generator.beta(1 + paid, 1 + np.maximum(self.arms.pulls - paid, 0.0))
+
+
+BANDITS: dict[str, type[UCB1] | type[BetaThompson]] = {"ucb1": UCB1, "beta": BetaThompson}
+
+
+def regret(
+    name: str,
+    theta: NDArray[np.float64],
+    strength: ArrayLike,
+    payoffs: NDArray[np.float64],
+    means: NDArray[np.float64],
+    generator: np.random.Generator,
+) -> NDArray[np.float64]:
+    """Regret of each problem over all pulls, (n_problems,): best mean payoff less that of the arm pulled, summed.
+
+    Parameters
+    ----------
+    name : str
+        Of `BANDITS`.
+    theta : (n_problems, n_arms) float
+        Mean payoff of the pseudo-pulls.
+    strength : float or (n_problems, 1) float
+        Pseudo-pulls of every arm; 0 for none.
+    payoffs : (n_problems, n_pulls, n_arms) float
+        Payoff of each arm at each pull, in {0, 1}.
+    means : (n_problems, n_arms) float
+        True mean payoff of each arm.
+    generator : numpy generator
+        Serves draws and ties.
+    """
+    player = BANDITS[name](theta.shape[1], n_tasks=len(theta), seed=generator)
+    player.arms.pulls[:], player.arms.mean[:] = strength, theta
+    every, lost = np.arange(len(theta)), np.zeros(len(theta))
+    for paid in payoffs.swapaxes(0, 1):
+        arm = player.select()
+        player.update(arm, paid[every, arm])
+        lost += means.max(axis=1) - means[every, arm]
+    return lost
+
 
 PLACE, PERCEPT = KINDS = ("place", "percept")
 FORMS = ("proportion", "dirichlet", "softmax", "support")

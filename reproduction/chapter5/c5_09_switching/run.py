@@ -15,13 +15,15 @@ from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.core.streams import stream
+from lifelore.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, Axes
 from reproduction.chapter5.c5_09_switching.agents import AGENTS, KNOWS, OKR, OURS, STATIC, KnowsType
-from reproduction.chapter5.c5_09_switching.matrix_games import MatrixGame
 from reproduction.chapter5.c5_09_switching.rounds import RoundWorld
 from reproduction.chapter5.c5_09_switching.schedules import GROUPS, SCHEDULES, Opponent
-from reproduction.chapter5.c5_09_switching.small_games import GAMES
+from reproduction.chapter5.c5_09_switching.small_games import GAMES, MatrixGame
 from reproduction.chapter5.c5_09_switching.thesis_worlds import ball_game, golf, pacman, surveillance, telephone
 from reproduction.engine.estimates import exact_value
+from reproduction.figures.interval_bars import draw_interval_bars
+from reproduction.figures.panels import panels
 
 Array = NDArray[np.float64]
 World = RoundWorld | MatrixGame
@@ -122,3 +124,31 @@ def _relative(results: Sequence[Mapping], name: str, schedules: Sequence[str]) -
     """Gains by run, (n_runs,), in units of what is gained on average by who knows the types; mean over cells."""
     own = [result["gains"] for result in results if result["schedule"] in schedules]
     return np.mean([np.array(gains[name]) / np.mean(gains[KNOWS]) for gains in own], axis=0)
+
+
+LABELS = {
+    "known": "static", "every_ten": "any type\nevery ten", "every_two": "any type\nevery two",
+    "adaptive": "adaptive", "exact": "exact\npatterns", "noise": "patterns,\n20 % noise",
+    "unknown": "unknown\npatterns",
+}  # fmt: skip
+COLOURS = (GREY, SKY, ORANGE, BLUE, PURPLE, GREEN)
+"""Of the agents in their order."""
+
+
+@panels(10.5, 3.8)
+def draw(result: Mapping, axes: Axes) -> None:
+    """Shares of the agents by kind of schedule, with 95 % intervals.
+
+    A group of bars for each kind of schedule, a bar for each agent; the line is who knows the type.
+    """
+    shares = {
+        name: [result["measured"][f"{key_of(name)}_{group}"] for group in GROUPS]
+        for name in AGENTS
+        if name != KNOWS
+    }
+    names = [LABELS[group] for group in GROUPS]
+    draw_interval_bars(axes, names, shares, colours=COLOURS, horizontal=False, words=None, legend=False)
+    axes.axhline(1, color=INK, linestyle=":", linewidth=1)
+    axes.set(ylabel="share of what is gained\nwith the type known", ylim=(0, 1.05))
+    axes.set_axisbelow(True)
+    axes.figure.legend(loc="outside right upper")

@@ -14,25 +14,20 @@ from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, ratio_estimate
 from lifelore.core.streams import stream
+from lifelore.figures.style import BLUE, GREY, ORANGE, Axes
+from lifelore.interaction import selection
 from lifelore.interaction.reuse.regret import library_regret
-from lifelore.interaction.selection import (
-    BeliefSampling,
-    ExpectedImprovement,
-    Greedy,
-    InformationDirected,
-    KnowledgeGradient,
-    SelectionRule,
-)
 from reproduction.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN, late_regret, play_rule
+from reproduction.figures.panels import panels
 from reproduction.own.o_01_default_rule.worlds import CALLS, EQUAL, NOISES, world_of
 
-RULES: dict[str, SelectionRule] = {
-    "EI, outcome": ExpectedImprovement(of="outcome"),
-    "EI, pay": ExpectedImprovement(of="pay"),
-    "IDS": InformationDirected(),
-    "KG": KnowledgeGradient(),
-    "sampling": BeliefSampling(),
-    "greedy": Greedy(),
+RULES: dict[str, selection.SelectionRule] = {
+    "EI, outcome": selection.ExpectedImprovement(of="outcome"),
+    "EI, pay": selection.ExpectedImprovement(of="pay"),
+    "IDS": selection.InformationDirected(),
+    "KG": selection.KnowledgeGradient(),
+    "sampling": selection.BeliefSampling(),
+    "greedy": selection.Greedy(),
 }
 CANDIDATES = ("EI, pay", "IDS")
 """Rules among which the library's default is decided: they need no horizon and cost little for many users."""
@@ -163,3 +158,24 @@ def _largest_excess(results: Sequence[Mapping], rule: str, kind: str = "rules") 
     world = int((shares[rule] - np.min(list(shares.values()), axis=0)).argmax())
     least = min(shares, key=lambda name: shares[name][world])
     return difference_estimate(stuck[rule][world], stuck[least][world])
+
+
+PANELS = {"regret": BLUE, "stuck_above_least": ORANGE}
+
+
+@panels(8.4, 2.8, 1, 2, sharey=True, grid="x")
+def draw(result: Mapping, left: Axes, right: Axes) -> None:
+    """Relative regret of six selection rules over all worlds, and their largest excess of stuck tasks.
+
+    A dot with its interval a rule; the dotted line is the most that a default may leave stuck.
+    """
+    for axes, (key, colour) in zip((left, right), PANELS.items(), strict=True):
+        for place, rule in enumerate(RULES):
+            number = result["measured"][f"{key}_{key_of(rule)}"]
+            low, high = number["ci95"] or [number["value"]] * 2
+            axes.plot([low, high], [place, place], color=colour, linewidth=2)
+            axes.plot(number["value"], place, "o", color=colour, markersize=6)
+    left.set(yticks=range(len(RULES)), yticklabels=list(RULES), xlabel="regret / regret of each world's best rule")
+    left.invert_yaxis()
+    right.axvline(MOST_STUCK, color=GREY, linestyle=(0, (1, 2)))
+    right.set_xlabel("stuck tasks above the least stuck rule, worst world")

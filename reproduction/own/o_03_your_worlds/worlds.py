@@ -11,9 +11,8 @@ from typing import Any, NamedTuple
 import gymnasium
 
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
-from reproduction.own.o_03_your_worlds.control import acrobot, cart_pole
 from reproduction.own.o_03_your_worlds.grids import NineByNine, whole_grid
-from reproduction.own.o_03_your_worlds.toy_texts import cliff, lake, taxi_context
+from reproduction.own.o_03_your_worlds.gymnasium_tasks import acrobot, cart_pole, cliff, lake, taxi_context
 
 
 class YourWorld(NamedTuple):

@@ -15,10 +15,11 @@ from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
-from lifelore.domains.tabletop.depth_camera import CAMERAS
-from lifelore.domains.tabletop.photograph import FIRST_OBJECT, Photograph
+from lifelore.domains.tabletop.depth_camera import CAMERAS, Camera
+from lifelore.domains.tabletop.photograph import FIRST_OBJECT, Photograph, photograph
 from lifelore.domains.tabletop.physics import NEAR as AT_CONTACT
 from lifelore.domains.tabletop.physics import Tabletop
+from lifelore.domains.tabletop.pose import Pose, about
 from lifelore.domains.tabletop.settings import TabletopScene
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
 from lifelore.perception.clouds.fused_views import fused
@@ -29,7 +30,43 @@ from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.scene_perception import perceived_scene
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.engine.estimates import exact_share, ratio_or_unmeasured
-from reproduction.own.o_08_views_without_poses.views_around import views_around
+
+Z = 2
+
+
+def views_around(
+    scene: TabletopScene, turns: Sequence[float], camera: Camera, rng: np.random.Generator
+) -> list[Photograph]:
+    """Photographs of a scene by the scene's camera turned about its objects.
+
+    Parameters
+    ----------
+    scene : TabletopScene
+    turns : sequence of float
+        Radians about the vertical axis through the middle of the objects.
+    camera : Camera
+        The camera that took the scene's cloud.
+    rng : Generator
+        Draws the noise.
+
+    Returns
+    -------
+    list of Photograph
+        One for each turn, in the table's frame; an object may be hidden in some of them.
+    """
+    table = Tabletop(scene.shapes, scene.poses)
+    outlines = [pose.apply(shape.outline()) for shape, pose in zip(scene.shapes, scene.poses, strict=True)]
+    points = np.concatenate(outlines)
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    photos = []
+    for turn in turns:
+        rotation = about(Z, turn)
+        view = Pose(middle + rotation @ (scene.view.position - middle), rotation @ scene.view.rotation)
+        photo = photograph(table, outlines, view, camera, rng, fewest=0)
+        assert photo is not None
+        photos.append(photo)
+    return photos
+
 
 LOT = 5
 SEED = 7012

@@ -6,7 +6,7 @@ import pytest
 from lifelore.action.demonstrations.competence import competence_by_steps
 from lifelore.action.demonstrations.demonstrations import Demonstration
 from lifelore.core import TERMINAL, Tables, stream
-from reproduction.chapter3.c3_12_demonstrated_priors.simulated_person import person_policy, simulated_demonstration
+from reproduction.chapter3.c3_12_demonstrated_priors.run import person_policy, simulated_demonstration
 
 
 def demonstration(agent, done, task="t") -> Demonstration:

@@ -18,7 +18,7 @@ from lifelore.domains.tabletop.pose import Pose
 from lifelore.domains.tabletop.settings import TabletopSettings
 from lifelore.domains.tabletop.tabletop import sample_scene
 from lifelore.perception.clouds.cloud_file import read_cloud
-from reproduction.own.o_08_views_without_poses.views_around import views_around
+from reproduction.own.o_08_views_without_poses.run import views_around
 
 pytest.importorskip("mujoco")
 

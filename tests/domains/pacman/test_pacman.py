@@ -5,8 +5,7 @@ import pytest
 
 from lifelore.core import COLLISION, TERMINAL, InputError
 from lifelore.domains.pacman.pacman import MAX_STEPS, STRATEGIES, PacmanMaze, PacmanTask, step
-from reproduction.chapter4.c4_04_pacman.episode_value import return_moments
-from reproduction.chapter4.c4_04_pacman.pacman_library import Arena
+from reproduction.chapter4.c4_04_pacman.pacman_library import Arena, return_moments
 
 NORTH, SOUTH, EAST, WEST = range(4)
 SMALL = PacmanMaze(5, 5)

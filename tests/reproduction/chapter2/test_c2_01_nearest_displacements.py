@@ -7,8 +7,8 @@ from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, CORE_RELATIONS, NONE, ON
 from lifelore.perception.contacts.interface import interfaces
 from lifelore.perception.pairs.pair_features import TURNING_COLUMNS, pair_features
-from reproduction.chapter2.c2_01_nearest_displacements.figure import PRINTED
 from reproduction.chapter2.c2_01_nearest_displacements.run import (
+    PRINTED,
     answers,
     confusion,
     hardest_margin,

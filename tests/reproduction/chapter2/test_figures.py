@@ -6,8 +6,8 @@ import pytest
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.figures.scenes import scene_picture
 from lifelore.figures.style import house_style, new_figure
-from reproduction.chapter2.c2_01_nearest_displacements.figure import PRINTED, draw_confusion
-from reproduction.chapter2.c2_03_displacements_by_relation.figure import draw_displacements
+from reproduction.chapter2.c2_01_nearest_displacements.run import PRINTED, draw_confusion
+from reproduction.chapter2.c2_03_displacements_by_relation.run import draw_displacements
 from reproduction.chapter2.scenes import scene_example
 
 

@@ -3,8 +3,7 @@
 import pytest
 from scipy.stats import beta
 
-from reproduction.chapter3.c3_15_advice_table.figure import PRINTED
-from reproduction.chapter3.c3_15_advice_table.run import readings, rows
+from reproduction.chapter3.c3_15_advice_table.run import TABLE, readings, rows
 from reproduction.engine.registry import claim_of
 
 CLAIM = claim_of("C3.15")
@@ -38,7 +37,7 @@ def test_numbers_by_hand():
 
 def test_intervals_of_the_printed_rewards():
     bounds = {one.measure: one.bound for one in CLAIM.statements}
-    explorers = [PRINTED[agent] for agent in ("random", "avoid", "left", "bug")]
+    explorers = [TABLE[agent] for agent in ("random", "avoid", "left", "bug")]
     for way, measure_name in enumerate(("explorers_alone", "explorers_advised")):
         right = sum(printed[way] for printed in explorers) * 20 / 1000
         ends = 1000 * beta.ppf(0.025, right, 81 - right), 1000 * beta.ppf(0.975, right + 1, 80 - right)

@@ -5,10 +5,10 @@ import pytest
 
 from lifelore.domains.telephone.telephone import STATES, Telephone
 from lifelore.figures.style import new_figure
-from reproduction.chapter4.c4_03_telephone_signals.figure import draw_call_graph
 from reproduction.chapter4.c4_03_telephone_signals.run import (
     SIGNAL_OF_PATH,
     compared,
+    draw_call_graph,
     exact_library,
     learnt_library,
     run_cell,

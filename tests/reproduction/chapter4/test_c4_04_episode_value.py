@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.mdp import TERMINAL
-from reproduction.chapter4.c4_04_pacman.episode_value import return_moments
+from reproduction.chapter4.c4_04_pacman.pacman_library import return_moments
 
 
 def naive_moments(tables, row_of, probs, steps):

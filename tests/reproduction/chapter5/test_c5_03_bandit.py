@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reproduction.chapter5.c5_03_priors_in_search.bandit import BANDITS, BetaThompson, regret
+from reproduction.chapter5.c5_03_priors_in_search.run import BANDITS, BetaThompson, regret
 
 
 def test_beliefs_of_thompson_sampling_by_hand():

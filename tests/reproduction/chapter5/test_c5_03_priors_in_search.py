@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from lifelore.core.mdp import TERMINAL
-from reproduction.chapter5.c5_03_priors_in_search.bandit import BANDITS
 from reproduction.chapter5.c5_03_priors_in_search.run import (
+    BANDITS,
     EVEN,
     FORMS,
     GUIDES,

@@ -11,12 +11,20 @@ from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcom
 from lifelore.interaction.signals.category_signal import CategorySignal
 from reproduction.chapter4.c4_04_pacman.pacman_library import Arena
 from reproduction.chapter5.c5_09_switching.agents import AGENTS, BPR, KNOWS, OKR, OURS, KnowsType
-from reproduction.chapter5.c5_09_switching.matrix_games import DRAWN, LOST, WON, MatrixGame
 from reproduction.chapter5.c5_09_switching.pacman_games import GhostFilter
 from reproduction.chapter5.c5_09_switching.rounds import Recorded, RoundWorld, Shown
 from reproduction.chapter5.c5_09_switching.run import measure, readings
 from reproduction.chapter5.c5_09_switching.schedules import SCHEDULES, Lived, Opponent
-from reproduction.chapter5.c5_09_switching.small_games import GAMES, RING, START, pursuit
+from reproduction.chapter5.c5_09_switching.small_games import (
+    DRAWN,
+    GAMES,
+    LOST,
+    RING,
+    START,
+    WON,
+    MatrixGame,
+    pursuit,
+)
 from reproduction.chapter5.c5_09_switching.thesis_worlds import golf
 
 # ---- small games -------------------------------------------------------------------------------------------

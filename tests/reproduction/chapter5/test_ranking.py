@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sklearn.metrics import average_precision_score
 
-from reproduction.chapter5.ranking import average_precision
+from reproduction.chapter5.c5_02_functional_roles.run import average_precision
 
 
 def test_by_hand():

@@ -3,8 +3,8 @@
 import pytest
 
 from reproduction.own.o_03_your_worlds.grids import whole_grid
+from reproduction.own.o_03_your_worlds.gymnasium_tasks import MOVES, cliff, taxi_context
 from reproduction.own.o_03_your_worlds.run import measure, numbers, readings
-from reproduction.own.o_03_your_worlds.toy_texts import MOVES, cliff, taxi_context
 from reproduction.own.o_03_your_worlds.worlds import WORLDS
 
 
