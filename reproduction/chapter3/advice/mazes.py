@@ -149,20 +149,6 @@ def policy_of(world: GridWorld, agent: str, found: Errand) -> NDArray[np.float64
     return explorer_probs(world, agent, found.goal if agent == "bug" else None)
 
 
-def walk(
-    maze: Maze,
-    found: Errand,
-    policy: NDArray[np.float64],
-    advisor: Advisor,
-    number: int,
-    max_steps: int,
-    heeds: bool = True,
-) -> Walk:
-    """An agent's walk on errand `number`; every agent meets the same start and random numbers."""
-    random = stream(*maze.names, "walk", number)
-    return advised_walk(found.tables, policy, advisor, random, max_steps, follows_advice=heeds)
-
-
 def policies_of(settings: Mapping, maze: Maze, agent: str) -> list[NDArray[np.float64]]:
     """The action probabilities of one of `AGENTS` on each errand of a maze."""
     return [policy_of(maze.world, agent, found) for found in errands_of(maze, settings["tasks"])]
@@ -175,10 +161,12 @@ def walks_of(
     advisor: Advisor,
     heeds: bool = True,
 ) -> list[Walk]:
-    """An agent's walks on all errands, with a policy for each."""
+    """An agent's walks on all errands, with a policy for each; every agent meets the same random numbers."""
+    tables = [found.tables for found in errands_of(maze, settings["tasks"])]
+    randoms = [stream(*maze.names, "walk", number) for number in range(len(tables))]
     return [
-        walk(maze, found, policies[number], advisor, number, settings["max_steps"], heeds)
-        for number, found in enumerate(errands_of(maze, settings["tasks"]))
+        advised_walk(task, policy, advisor, random, settings["max_steps"], follows_advice=heeds)
+        for task, policy, random in zip(tables, policies, randoms, strict=True)
     ]
 
 

@@ -24,6 +24,7 @@ from reproduction.chapter5.c5_08_grasps.parallel_gripper import Grasp, GraspedTa
 from reproduction.chapter5.c5_08_grasps.searches import anywhere, around, carried, from_above, from_seeds
 from reproduction.chapter5.role_scenes import POOLS, role_scene
 from reproduction.engine.estimates import UNMEASURED, mean_by_cluster
+from reproduction.engine.records import nested
 
 LOT = 5
 HOLES = ("hole-other", "hole-hinged")
@@ -125,33 +126,18 @@ def is_grasped(world: GraspedTabletop, label: int, grasps: Iterable[Grasp]) -> b
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Shares within `TRIES` tries, and differences on the same objects; intervals resample scenes."""
-    seeded, moved = objects_with_seeds(results), objects_carried(results)
+    """Shares of objects that are grasped, and differences on the same objects; intervals resample scenes.
+
+    Searches are compared on objects with a seed, and carried grasps on objects to which one could be carried.
+    """
+    objects = nested(results, "objects")
+    seeded, moved = [row for row in objects if row["seeds"]], [row for row in objects if "carried" in row]
+
+    def share(rows: Sequence[Mapping], name: str, less: str | None = None) -> Estimate:
+        values = [float(row[name]) - (row[less] if less else 0.0) for row in rows]
+        return mean_by_cluster(values, [row["scene"] for row in rows]) if rows else UNMEASURED
+
     found = {name: share(seeded, name) for name in SEARCHES}
     found |= {name.replace(", ", "_").replace(" ", "_"): share(moved, name) for name in TRANSFERS}
-    found["seeded_less_anywhere"] = difference(seeded, "seeded", "anywhere")
-    return found | {"carried_less_not_carried": difference(moved, "carried", "not carried")}
-
-
-def objects_with_seeds(results: Sequence[Mapping]) -> list[Mapping]:
-    """Objects that have a seed; on these alone searches are compared."""
-    return [row for result in results for row in result["objects"] if row["seeds"]]
-
-
-def objects_carried(results: Sequence[Mapping]) -> list[Mapping]:
-    """Objects to which a grasp that worked on their counterpart could be carried."""
-    return [row for result in results for row in result["objects"] if "carried" in row]
-
-
-def share(rows: Sequence[Mapping], name: str) -> Estimate:
-    """Share of objects that a search grasps, the mean over correspondences where there are several."""
-    return _mean([row[name] for row in rows], rows)
-
-
-def difference(rows: Sequence[Mapping], name: str, other: str) -> Estimate:
-    """Share of one search less that of another on the same objects."""
-    return _mean([float(row[name]) - row[other] for row in rows], rows)
-
-
-def _mean(values: Sequence[float], rows: Sequence[Mapping]) -> Estimate:
-    return mean_by_cluster(values, [row["scene"] for row in rows]) if rows else UNMEASURED
+    found["seeded_less_anywhere"] = share(seeded, "seeded", "anywhere")
+    return found | {"carried_less_not_carried": share(moved, "carried", "not carried")}
