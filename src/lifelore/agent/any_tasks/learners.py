@@ -61,7 +61,7 @@ class FixedPolicy:
         self.visited.update(dict.fromkeys((step.state, step.context) for step in steps))
         self.returns.add(steps, earned, ended)
 
-    def policy(self) -> Callable[[Any], int]:
+    def policy(self) -> Any:
         """The user's policy."""
         return self.function
 

@@ -63,17 +63,15 @@ def _canonical(part: Hashable) -> str:
 
 
 class ContextCodes:
-    """Codes of the contexts met so far; refuses two contexts with the same code."""
+    """Codes of the contexts met so far; refuses two contexts with the same code.
+
+    contexts : code to context
+    """
 
     def __init__(self, bits: int = CODE_BITS) -> None:
         self.bits = bits
         self._code: dict[Hashable, int] = {}
-        self._context: dict[int, Hashable] = {}
-
-    @property
-    def contexts(self) -> dict[int, Hashable]:
-        """Code to context of the contexts met so far."""
-        return dict(self._context)
+        self.contexts: dict[int, Hashable] = {}
 
     def __getitem__(self, context: Hashable) -> int:
         """The code of a context; InputError if another context has the same code."""
@@ -88,7 +86,7 @@ class ContextCodes:
 
     def _meet(self, context: Hashable) -> int:
         code = context_code(context, self.bits)
-        other = self._context.setdefault(code, context)
+        other = self.contexts.setdefault(code, context)
         if other != context:
             raise InputError(
                 f"contexts {ascii(other)[:60]} and {ascii(context)[:60]} share the code {code}, so their counts "

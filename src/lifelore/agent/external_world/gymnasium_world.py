@@ -46,8 +46,8 @@ class GymnasiumWorld(AbstractContextManager):
     Raises
     ------
     InputError
-        Actions are not ``Discrete`` or differ between tasks; `context` or `state` returns an unhashable
-        value. Errors of the environment itself pass unchanged.
+        Actions are not ``Discrete`` or differ between tasks. Errors of the environment itself pass unchanged. A
+        life refuses a `context` or `state` that is not hashable.
 
     Examples
     --------
@@ -171,12 +171,11 @@ class GymnasiumWorld(AbstractContextManager):
         if self._context is None:
             return state
         observation = self._current[0]
-        features = self._context(observation, last_reward) if self._with_reward else self._context(observation)
-        return _require_hashable("context or features", features)
+        return self._context(observation, last_reward) if self._with_reward else self._context(observation)
 
     def see(self, observation: Any) -> Hashable:
         """The state of an observation, which is now the present one."""
-        state = _require_hashable("state", self._state(observation)) if self._state else hashable(observation)
+        state = self._state(observation) if self._state else hashable(observation)
         self._current = observation, state
         return state
 
@@ -206,16 +205,6 @@ def hashable(observation: Any) -> Hashable:
         f"observation must be made of numbers, text, arrays, dicts and tuples, got {type(observation).__name__}; "
         "pass state= to convert it to a hashable value"
     )
-
-
-def _require_hashable(name: str, value: Any) -> Hashable:
-    try:
-        hash(value)
-    except TypeError:
-        raise InputError(
-            f"{name} must return a hashable value, got {type(value).__name__}; return a tuple or a number"
-        ) from None
-    return value
 
 
 def _made(env_or_factory: Any, task: int) -> gymnasium.Env:
