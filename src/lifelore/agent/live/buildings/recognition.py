@@ -33,6 +33,9 @@ LEAST_IN_FRAME = 0.85
 other floors of one outline leave less."""
 LEAST_MARGIN = 0.15
 """Least lead over the best clearly different pose, and over every other building."""
+TIMES_MISSED, MORE_MISSED = 4.0, 15.0
+"""A pose also leads if the other one misses so many times its walls, and so many metres more: rows of shelves fit
+one aisle further, too, but for the outer walls. Furniture that moved since counts against both poses."""
 SAME_FRAME = 0.05, 0.002
 """Metres and radians: a pose this near to the identity is the identity."""
 
@@ -227,12 +230,18 @@ def fitting_building(
     if best.match < (LEAST_MATCH if name is None else LEAST_NAMED_MATCH):
         return _refused(name, f"the nearest is {building.name}, where {_percent(best.match)} of the walls match")
     second = rivals.get(building)
-    if second is not None and best.match - second.match < LEAST_MARGIN:
+    if second is not None and not leads(best, second):
         return _refused(name, f"two poses fit {building.name} equally")
     if len(fits) > 1 and best.match - fits[1][0].match < LEAST_MARGIN:
         return _refused(name, f"{building.name} and {fits[1][1].name} fit equally; name the building")
     pose = IDENTITY if _near_identity(best.pose) else best.pose
     return Recognised(building, pose, best.match), None
+
+
+def leads(best: Fit, second: Fit) -> bool:
+    """Whether a pose fits clearly better than another one."""
+    more_missed = second.missed > max(TIMES_MISSED * best.missed, best.missed + MORE_MISSED)
+    return best.match - second.match >= LEAST_MARGIN or more_missed
 
 
 def _near_identity(pose: Pose) -> bool:
