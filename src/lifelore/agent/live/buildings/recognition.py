@@ -1,6 +1,7 @@
 """Recognises the building that a map shows, and makes the world on the building's own grid."""
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 
 from lifelore.agent.building_record import (
@@ -108,9 +109,9 @@ def recognised_place(
         free_name = name or _free_name(settings, occupancy, remembered_buildings(memory))
         found = Recognised(Building.new(occupancy, free_name), IDENTITY, 1.0)
     else:
-        laid, corner = aligned_map(occupancy, found.pose, found.building.frame, world.frame.cell)
+        laid, corner = _laid_map(occupancy, found.pose, found.building.frame, world.frame.cell)
         if found.pose != IDENTITY or laid.origin != occupancy.origin or laid.state.shape != occupancy.state.shape:
-            world = world_from_settings(settings, laid)
+            world = kept_world(settings, laid)
     building, recognised = found.building, reason is None
     grid = BuildingGrid(frame_key(world, Frame(world.frame.cell, building.frame.origin)), corner, building.key)
     earlier = same_place(world, memory, grid)
@@ -131,6 +132,11 @@ def recognised_place(
             map_record(map_digest(occupancy), building, found.pose, found.walls),
         ]
     return Place(world, grid, report, [record for record in news if len(record.slots)], laid, earlier)
+
+
+kept_world = lru_cache(maxsize=2)(world_from_settings)
+_laid_map = lru_cache(maxsize=2)(aligned_map)
+"""A world made of settings and a map, and a map on a building's grid; those of the last maps stay."""
 
 
 def _free_name(settings: WorldSettings, occupancy: OccupancyMap, buildings: list[Building]) -> str:
