@@ -196,9 +196,11 @@ def test_a_closed_door_contradicts_the_remembered_way(tmp_path):
 
 
 def test_a_door_that_moved(tmp_path):
-    """The remembered way is straight at the bottom; the map has the door at the other end alone."""
-    memory = remember(tmp_path, two_rooms(tmp_path, "before", (45,)))
-    around = find(two_rooms(tmp_path, "after", (2,)), memory)
+    """The remembered way is straight at the bottom; the map, written anew, has the door at the other end alone."""
+    rooms = two_rooms(tmp_path, "rooms", (45,))
+    memory = remember(tmp_path, rooms)
+    assert find(rooms, memory).poses[:, 1].max() < 2.0
+    around = find(two_rooms(tmp_path, "rooms", (2,)), memory)
     assert around.poses[:, 1].max() > 5.0
     assert np.all(np.abs(around.contradicted[:, 0] - 6.05) < 0.6)
     assert np.all(around.contradicted[:, 1] < 1.7)

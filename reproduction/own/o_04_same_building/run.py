@@ -6,7 +6,7 @@ The seeds of the offices chose none of the thresholds.
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from lifelore.agent.live.buildings.recognition import LEAST_MARGIN, LEAST_MATCH
+from lifelore.agent.live.buildings.recognition import LEAST_MATCH, leads
 from lifelore.core.metrics import Estimate
 from lifelore.domains.buildings.occupancy_map import OccupancyMap
 from lifelore.domains.buildings.office import office_map
@@ -44,7 +44,7 @@ def _compared(found: Registration | None) -> dict[str, Any]:
 
 def recognised(found: Registration) -> bool:
     """Whether a registration would recognise the building, were it the only one in memory."""
-    clear = found.second is None or found.best.match - found.second.match >= LEAST_MARGIN
+    clear = found.second is None or leads(found.best, found.second)
     return found.best.match >= LEAST_MATCH and clear
 
 

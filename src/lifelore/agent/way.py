@@ -4,14 +4,16 @@ import csv
 import math
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.agent.building_record import map_digest
 from lifelore.agent.live import transitions
-from lifelore.agent.live.buildings.recognition import recognised_place
+from lifelore.agent.live.buildings.recognition import kept_world, recognised_place
 from lifelore.agent.live.buildings.remembered_moves import contradicted_moves, remembered_record
 from lifelore.agent.live.goals.destinations import Destination, NamedPlaces, Point
 from lifelore.agent.travel import Travel
@@ -21,12 +23,17 @@ from lifelore.core.errors import InputError
 from lifelore.domains.buildings.clear_path import clear_path
 from lifelore.domains.buildings.floor import Floor, floor_of
 from lifelore.domains.buildings.footprint import Footprint, footprint_path
-from lifelore.domains.worlds import WorldSettings, map_from_settings, world_from_settings
+from lifelore.domains.buildings.occupancy_map import OccupancyMap
+from lifelore.domains.worlds import WorldSettings, map_from_settings
 from lifelore.memory import open_memory
 
 UNDRIVEN = 0.5
 """Metres that a metre costs beyond its length on ground that memory does not know; more makes longer detours over
 known ground."""
+
+_LAST: dict[tuple[str, str], OccupancyMap] = {}
+"""The last map, by source and digest. What is made of it stays, so that further ways on a big map take a third."""
+_kept_floor = lru_cache(maxsize=2)(floor_of)
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,14 +135,14 @@ def way(
         raise InputError(f"spacing must be a positive number of metres, got {spacing}")
     begin, end = Destination.of(start), Destination.of(goal)
     world = WorldSettings("building", map, cell=cell, robot_radius=robot_radius, seed=seed)
-    occupancy = map_from_settings(world)
+    occupancy = _map_of(world)
     with open_memory(memory, read_only=True) as opened:
-        place = recognised_place(world, world_from_settings(world, occupancy), occupancy, opened, building)
+        place = recognised_place(world, kept_world(world, occupancy), occupancy, opened, building)
         record, names = remembered_record(place, opened), NamedPlaces.of(place)
         begin = names.located("from", begin, opened)
         end = names.located("to", end, opened)
         travel = Travel.recalled(place.world, place.grid, opened)
-    floor = floor_of(place.occupancy or occupancy, place.world)
+    floor = _kept_floor(place.occupancy or occupancy, place.world)
     ends = begin.located_point, end.located_point
     first, last = floor.state_at("from", ends[0]), floor.state_at("to", ends[1])
     known = (transitions.from_record(place.world, record, place.grid.corner).percept >= 0) | travel.driven
@@ -148,6 +155,15 @@ def way(
     contradicted = contradicted_moves(place, record, first, last)
     poses = poses_along(path, spacing)
     return Way(begin, end, poses, len(passed), int((~known[passed]).sum()), seconds, contradicted)
+
+
+def _map_of(settings: WorldSettings) -> OccupancyMap:
+    """The map of a world; the same object as at the last call if the map is the same."""
+    occupancy = map_from_settings(settings)
+    key = occupancy.source, map_digest(occupancy)
+    if key not in _LAST:
+        _LAST.clear()
+    return _LAST.setdefault(key, occupancy)
 
 
 def clock_from_text(text: str) -> float:

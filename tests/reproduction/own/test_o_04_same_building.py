@@ -7,7 +7,7 @@ from reproduction.own.o_04_same_building.run import OTHERS, measure, recognised
 
 def test_the_rule_of_recognition():
     def fit(match):
-        return Fit((0.0, 0.0, 0.0), match, 0.9)
+        return Fit((0.0, 0.0, 0.0), match, 0.9, 1 - match)
 
     assert recognised(Registration(fit(0.97), None))
     assert recognised(Registration(fit(0.97), fit(0.8)))

@@ -110,18 +110,19 @@ class Floor:
         pixel = self.pixels(point)[0]
         at = _nearest_pixel(pixel)
         inside = 0 <= at[0] < self.state.shape[0] and 0 <= at[1] < self.state.shape[1]
-        if inside and self.state[at] >= 0 and self._is_clear(pixel):
+        if inside and self.state[at] >= 0 and self._clearance(pixel) > self.radius:
             return None
         x, y = self.metres(self._nearest(pixel))[0].tolist()
         known = inside and bool(self.occupancy.state[at] != UNKNOWN)
         return Refusal(self._why_not(at if inside else None), known, (x, y))
 
-    def _is_clear(self, pixel: NDArray[np.float64]) -> bool:
+    def _clearance(self, pixel: NDArray[np.float64]) -> float:
+        """Pixels to the nearest solid one; inf without any up to about two pixels beyond the radius."""
         reach = int(self.radius) + 2
         row, column = _nearest_pixel(pixel)
         top, left = max(row - reach, 0), max(column - reach, 0)
         near = np.argwhere(self.solid[top : row + reach + 1, left : column + reach + 1])
-        return bool((np.hypot(*(near + np.array([top, left]) - pixel).T) > self.radius).all())
+        return float(np.hypot(*(near + np.array([top, left]) - pixel).T).min(initial=np.inf))
 
     def _nearest(self, pixel: NDArray[np.float64]) -> NDArray[np.int64]:
         """The free pixel nearest to a pixel; the first of those in reading order."""
@@ -135,7 +136,7 @@ class Floor:
         seen = self.occupancy.state[at]
         if seen != FREE:
             return "is occupied" if seen == OCCUPIED else "is unknown"
-        if self.distance[at] <= self.radius + 1:
+        if self._clearance(np.array(at, float)) <= self.radius + 1:
             return f"is nearer to an obstacle than the robot's radius of {self.robot_radius:g} m"
         return "is free, but belongs to no place that the robot can reach"
 

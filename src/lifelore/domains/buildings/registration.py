@@ -57,11 +57,13 @@ class Fit(NamedTuple):
     pose : from the new map's world frame to the old map's
     match : share of walls on walls, in [0, 1]
     overlap : share of the smaller map's walls on ground that the other map knows, in [0, 1]
+    missed : metres of walls of either map that lie on no wall of the other
     """
 
     pose: Pose
     match: float
     overlap: float
+    missed: float
 
 
 @dataclass(frozen=True)
@@ -293,15 +295,16 @@ def _rough_match(a: Walls, b: Walls, pose: Pose) -> float:
 
 
 def _fit(a: Walls, b: Walls, pose: Pose) -> Fit:
-    hits, seen, misses = 0, 0, 0
+    hits, seen, misses, metres = 0, 0, 0, 0.0
     for here, other, back in ((a, b, pose), (b, a, inverse(pose))):
         ground = here.map.values_at(moved(back, other.points), here.ground, 0)
         seen += int((ground > 0).sum())
         hits += int((ground == 2).sum())
-        misses += _clustered(other, ground == 1)
+        missed = _clustered(other, ground == 1)
+        misses, metres = misses + missed, metres + missed * other.pixel
     # Pixels of different sizes draw the same wall with different numbers of points.
     smaller = min(len(a.points), len(b.points))
-    return Fit(pose, hits / (hits + misses) if hits else 0.0, min(seen / (2 * smaller), 1.0))
+    return Fit(pose, hits / (hits + misses) if hits else 0.0, min(seen / (2 * smaller), 1.0), metres)
 
 
 def _clustered(walls: Walls, missed: NDArray[np.bool_]) -> int:

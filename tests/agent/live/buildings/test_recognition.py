@@ -1,5 +1,6 @@
 """Lives on maps that were saved again: the building is recognised, and nothing else is."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -140,6 +141,21 @@ def test_a_symmetric_building_is_refused_as_ambiguous(tmp_path):
     assert again["reason"] == "two poses fit home equally"
     # In the same frame, the frame tells the pose.
     assert life_on(tmp_path, padded(hall), "padded").report["building"]["name"] == "home"
+
+
+def test_rows_of_shelves_are_recognised_by_the_walls_around_them(tmp_path):
+    """One aisle further all shelves fit, and the outer walls do not; within the rows nothing tells the aisles."""
+    state = np.full((200, 320), FREE, np.uint8)
+    state[[0, 1, -2, -1]] = state[:, [0, 1, -2, -1]] = OCCUPIED
+    for column in range(20, 290, 20):
+        state[30:80, column : column + 8] = state[110:170, column : column + 8] = OCCUPIED
+    shelves = OccupancyMap(state, 0.1)
+    life_on(tmp_path, shelves)
+    again = life_on(tmp_path, turned(shelves, 17.0), "again").report["building"]
+    assert (again["name"], again["recognised"]) == ("home", True)
+    part = replace(shelves, state=state[20:180, 60:260].copy())
+    refused = life_on(tmp_path, turned(part, 17.0), "part").report["building"]
+    assert refused["reason"] == "two poses fit home equally"
 
 
 def test_a_name_decides(home):

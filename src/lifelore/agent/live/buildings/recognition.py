@@ -1,6 +1,7 @@
 """Recognises the building that a map shows, and makes the world on the building's own grid."""
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 
 from lifelore.agent.building_record import (
@@ -33,6 +34,9 @@ LEAST_IN_FRAME = 0.85
 other floors of one outline leave less."""
 LEAST_MARGIN = 0.15
 """Least lead over the best clearly different pose, and over every other building."""
+TIMES_MISSED, MORE_MISSED = 4.0, 15.0
+"""A pose also leads if the other one misses so many times its walls, and so many metres more: rows of shelves fit
+one aisle further, too, but for the outer walls. Furniture that moved since counts against both poses."""
 SAME_FRAME = 0.05, 0.002
 """Metres and radians: a pose this near to the identity is the identity."""
 
@@ -105,9 +109,9 @@ def recognised_place(
         free_name = name or _free_name(settings, occupancy, remembered_buildings(memory))
         found = Recognised(Building.new(occupancy, free_name), IDENTITY, 1.0)
     else:
-        laid, corner = aligned_map(occupancy, found.pose, found.building.frame, world.frame.cell)
+        laid, corner = _laid_map(occupancy, found.pose, found.building.frame, world.frame.cell)
         if found.pose != IDENTITY or laid.origin != occupancy.origin or laid.state.shape != occupancy.state.shape:
-            world = world_from_settings(settings, laid)
+            world = kept_world(settings, laid)
     building, recognised = found.building, reason is None
     grid = BuildingGrid(frame_key(world, Frame(world.frame.cell, building.frame.origin)), corner, building.key)
     earlier = same_place(world, memory, grid)
@@ -128,6 +132,11 @@ def recognised_place(
             map_record(map_digest(occupancy), building, found.pose, found.walls),
         ]
     return Place(world, grid, report, [record for record in news if len(record.slots)], laid, earlier)
+
+
+kept_world = lru_cache(maxsize=2)(world_from_settings)
+_laid_map = lru_cache(maxsize=2)(aligned_map)
+"""A world made of settings and a map, and a map on a building's grid; those of the last maps stay."""
 
 
 def _free_name(settings: WorldSettings, occupancy: OccupancyMap, buildings: list[Building]) -> str:
@@ -227,12 +236,18 @@ def fitting_building(
     if best.match < (LEAST_MATCH if name is None else LEAST_NAMED_MATCH):
         return _refused(name, f"the nearest is {building.name}, where {_percent(best.match)} of the walls match")
     second = rivals.get(building)
-    if second is not None and best.match - second.match < LEAST_MARGIN:
+    if second is not None and not leads(best, second):
         return _refused(name, f"two poses fit {building.name} equally")
     if len(fits) > 1 and best.match - fits[1][0].match < LEAST_MARGIN:
         return _refused(name, f"{building.name} and {fits[1][1].name} fit equally; name the building")
     pose = IDENTITY if _near_identity(best.pose) else best.pose
     return Recognised(building, pose, best.match), None
+
+
+def leads(best: Fit, second: Fit) -> bool:
+    """Whether a pose fits clearly better than another one."""
+    more_missed = second.missed > max(TIMES_MISSED * best.missed, best.missed + MORE_MISSED)
+    return best.match - second.match >= LEAST_MARGIN or more_missed
 
 
 def _near_identity(pose: Pose) -> bool:
