@@ -30,7 +30,7 @@ CHUNK = 1 << 16
 WORDS = ("user", "policy", *OPTIONAL, GROUP)
 COUNTED = ("pending", "filled_outcomes", "filled_policies", "without_policy")
 """Reasons for which lines are left out or filled; see `ReuseLog`."""
-HINT = "; leave it empty if it is not known, or say --missing WORD"
+HINT = "; yes and no count as 1 and 0; leave it empty if it is not known, or say --missing WORD"
 
 Ints = NDArray[np.int64]
 
@@ -179,11 +179,11 @@ class LogReader:
 
     def _check(self, name: str, word: str, line: int) -> None:
         where = f"{self._name} line {line}: "
-        if name == "policy" and not word:
-            raise InputError(
-                f"{where}policy must be 1 to {LONGEST_NAME} printable characters, got ''; --missing-policy says "
-                "what a missing policy means"
-            )
+        if not word:
+            hint = "leave the line out, or give it a user"
+            if name == "policy":
+                hint = "--missing-policy says what a missing policy means"
+            raise InputError(f"{where}{name} must be 1 to {LONGEST_NAME} printable characters, got ''; {hint}")
         check_name(where + name, word)
 
     def _without_policy(self, policies: Ints, absent: NDArray, here: NDArray) -> NDArray:
