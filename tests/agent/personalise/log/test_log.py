@@ -292,3 +292,9 @@ def test_whole_floats_of_a_table_are_the_names_that_a_file_has():
     frame = {"user": [5.0, 6.5], "policy": [1.0, 2.0], "outcome": [1.0, 0.25]}
     log = read_log(frame)
     assert (log.user.words, log.policy.words, log.outcomes.tolist()) == (["5", "6.5"], ["1", "2"], [1.0, 0.25])
+
+
+def test_of_many_bad_lines_the_first_is_named(written):
+    text = HEAD + "".join(f"{'a' * (201 + number)},p,1\n" for number in range(40))
+    with pytest.raises(InputError, match="line 2: user must be 1 to 200 printable"):
+        read_log([written(text)])

@@ -166,14 +166,15 @@ class LogReader:
         codes, known = self.codes[name], self._known[name]
         if column is None:
             return np.full(len(line), codes.setdefault("", len(codes)))
-        for word in set(column).difference(known):
+        first = dict(zip(reversed(column), reversed(line.tolist()), strict=True))
+        for word in sorted(first.keys() - known.keys(), key=first.__getitem__):
             own = unescaped(word.strip())
             own = "" if own in self._missing else own
             if not own and name == "policy" and self._form.missing_policy != REFUSE:
                 known[word] = -1
                 continue
             if own or name in ("user", "policy"):
-                self._check(name, own, line[column.index(word)])
+                self._check(name, own, first[word])
             known[word] = codes.setdefault(own, len(codes))
         return np.fromiter(map(known.__getitem__, column), np.int64, len(column))
 
