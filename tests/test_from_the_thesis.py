@@ -51,6 +51,17 @@ def test_every_name_of_a_row_can_be_imported_from_a_room():
     assert not [name for name in names if name not in NAMES]
 
 
+def test_every_attribute_that_the_page_names_exists():
+    homes = [import_module(f"lifelore.{room}") for room in ROOMS]
+    owners = {name: getattr(home, name) for home in homes for name in home.__all__}
+    named = {
+        (name.title() if name.islower() else name, part)
+        for name, part in re.findall(r"`([A-Za-z]+)\.([a-z_]+)", PAGE)
+    }
+    assert {("Scene", "networks"), ("LongLivedAgent", "curiosity")} <= named
+    assert not [(name, part) for name, part in named if name in owners and not hasattr(owners[name], part)]
+
+
 def test_a_docstring_cites_what_the_thesis_has():
     wrong = []
     for file in sorted((ROOT / "src" / "lifelore").rglob("*.py")):

@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, UNLABELLED, LabelledCloud
-from lifelore.perception import perceived_scene
+from lifelore.perception import perceived_scene, read_cloud, to_scene
 from lifelore.perception.reasoning.fact import Fact
 from lifelore.perception.reasoning.planning_problem import scene_problem
 from lifelore.perception.reasoning.planning_state import NO_TABLE, scene_state
@@ -98,3 +98,13 @@ def test_points_and_labels_may_be_any_kind_of_numbers(tower, of_points, of_label
     cloud = cloud_of(tower)
     scene = perceived_scene(LabelledCloud(cloud.points.astype(of_points), cloud.labels.astype(of_labels)))
     assert scene.relation_of(3, 2).relation == "on"
+
+
+def test_each_step_from_a_file_to_a_scene_says_what_it_takes():
+    points = np.zeros((40, 3))
+    with pytest.raises(InputError, match=r"source must be a path or an array of points, got list"):
+        read_cloud([[0.0, 0.0, 0.0]])
+    with pytest.raises(InputError, match=r"cloud must be a PointCloud \(read_cloud makes one\), got ndarray"):
+        to_scene(points)
+    with pytest.raises(InputError, match=r"cloud must be a LabelledCloud \(to_scene makes one\), got PointCloud"):
+        perceived_scene(read_cloud(points))

@@ -6,7 +6,7 @@ import { describeFloor, drawFloor, letter } from "/page/floor.js";
 
 const KEYS = { ArrowUp: 0, ArrowDown: 1, ArrowRight: 2, ArrowLeft: 3, p: 4, P: 4, a: 5, A: 5 };
 const PART = 5; // Episodes of a point of a curve.
-const COLOURS = ["#5b636d", "#0072b2", "#007a59"];
+const COLOURS = ["var(--grey)", "var(--blue)", "var(--green)"];
 const byId = (id) => document.getElementById(id);
 
 let view, waiting = Promise.resolve();

@@ -102,6 +102,8 @@ def _stated_words(
 
 def _check_frame(cloud: LabelledCloud) -> None:
     """Refuse other units than metres, objects numbered from 0, and a table that is not level."""
+    if not isinstance(cloud, LabelledCloud):
+        raise InputError(f"cloud must be a LabelledCloud (to_scene makes one), got {type(cloud).__name__}")
     span = float(np.ptp(box_of(cloud.points), axis=0).max()) if len(cloud.points) else 0.0
     if span > MAX_SPAN:  # stray points apart, as where a file is read
         span = float(np.ptp(np.quantile(cloud.points, [0.01, 0.99], axis=0), axis=0).max())

@@ -283,5 +283,5 @@ def test_users_spelt_in_two_ways_are_named(fitted):
     table = drawn(0, RATES)
     table["user"][0], table["user"][7] = "U0", "U1"
     document, _ = fitted(table)
-    spelt = "users differ only in capitals or spaces from others (2, as 'U0' and 'u0'); each counts"
+    spelt = "users differ only in capitals, spaces or a final .0 from others (2, as 'U0' and 'u0'); each counts"
     assert [note for note in document["notes"] if "capitals" in note] == [spelt]

@@ -104,8 +104,9 @@ def _note_strangers(url: str, host: str, defects: list[str]) -> None:
 
 @pytest.fixture
 def check_page(tmp_path: Path) -> Callable[..., None]:
-    """Check that a page fits its window and is accessible; with a name, draw the picture of the page guide.
+    """Check that a page fits its window and is accessible, on light and dark ground.
 
+    With a name, draw the picture of the page guide;
     `LIFELORE_PICTURES=docs/pictures python -m pytest tests/app/pages` makes the pictures again.
     """
     folder = PICTURES or tmp_path
@@ -113,8 +114,10 @@ def check_page(tmp_path: Path) -> Callable[..., None]:
     def check_page(page: Page, picture: str | None = None, height: int = 0) -> None:
         wide = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
         assert wide <= 0, f"{page.url} is {wide} px too wide"
-        found = Axe().run(page)
-        assert found.violations_count == 0, f"{page.url}: {found.generate_report()}"
+        for scheme in ("dark", "light"):
+            page.emulate_media(color_scheme=scheme)
+            found = Axe().run(page)
+            assert found.violations_count == 0, f"{page.url}, {scheme}: {found.generate_report()}"
         if picture is not None:
             page.set_viewport_size({"width": 1280, "height": height})
             page.evaluate("scrollTo(0, 0)")

@@ -97,6 +97,13 @@ def test_what_is_no_table_is_refused(source):
         FrameColumns(source)
 
 
+def test_a_column_that_comes_twice_is_refused():
+    frame = pandas_frame({"policy": ["a"], "outcome": [1.0], "other": [2.0]})
+    frame.columns = ["policy", "outcome", "outcome"]
+    with pytest.raises(InputError, match="frame must have one column 'outcome', it has 2"):
+        FrameColumns(frame).column("outcome")
+
+
 def test_a_lazy_frame_is_to_be_collected():
     lazy = polars_frame(COLUMNS).lazy()
     assert is_frame(lazy)

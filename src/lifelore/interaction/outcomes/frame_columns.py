@@ -41,9 +41,11 @@ class FrameColumns:
         self._frame = frame
 
     def column(self, name: str) -> list[Any]:
-        """The values of a column, None where one is missing; InputError where there is no such column."""
+        """The values of a column, None where one is missing; InputError where there is none or several."""
         if name not in self.names:
             raise InputError(f"frame has no column {name!r}; its columns are {self.names[:20]}")
+        if (count := self.names.count(name)) > 1:
+            raise InputError(f"frame must have one column {name!r}, it has {count}")
         column = self._frame[name]
         method = next((name for name in ("to_pylist", "to_list", "tolist") if hasattr(column, name)), None)
         values = column if method is None else getattr(column, method)()

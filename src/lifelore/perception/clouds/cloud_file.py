@@ -63,6 +63,8 @@ def read_cloud(source: str | os.PathLike[str] | NDArray, *, units: str = "m", la
             "a cloud",
             lambda: _with_objects(in_metres(cloud_from_arrays(source, rule="plain"), units), labels),
         )
+    if not isinstance(source, str | os.PathLike):
+        raise InputError(f"source must be a path or an array of points, got {type(source).__name__}")
     path = Path(source)
     return one_line_errors(str(path), "a cloud", lambda: _with_objects(in_metres(_decoded(path), units), labels))
 

@@ -116,6 +116,8 @@ def segmented_scene(
         No point was measured in the region, the camera is beyond `cloud_scale.FAR`, `up` breaks its rule, no
         table can be found and up is unknown, or a cloud without labels has too many objects.
     """
+    if not isinstance(cloud, PointCloud):
+        raise InputError(f"cloud must be a PointCloud (read_cloud makes one), got {type(cloud).__name__}")
     _check_camera(cloud.camera)
     check_up(up)
     cloud = thinned(inside(cloud, region))

@@ -109,10 +109,13 @@ def test_a_log_given_twice_is_refused(written, tmp_path):
         ("user,user,policy,outcome\na,b,p,1\n", "must have one column 'user', its header names 2"),
         (HEAD + "a,p,1\nb,q,nan\n", "line 3: outcome must be a finite number, got 'nan'"),
         (HEAD + "a,p,inf\n", "line 2: outcome must be a finite number, got 'inf'"),
-        (HEAD + "a,p,yes\n", "line 2: outcome must be a finite number, got 'yes'"),
+        (
+            HEAD + "a,p,maybe\n",
+            "line 2: outcome must be a finite number, got 'maybe'; yes and no count as 1 and 0",
+        ),
         (HEAD + "a,p\n", "line 2: must have 3 fields like the header, got 2"),
         (HEAD + "a,p,1,\n", "line 2: must have 3 fields like the header, got 4"),
-        (HEAD + ",p,1\n", "line 2: user must be 1 to 200 printable characters, got ''"),
+        (HEAD + ",p,1\n", "got ''; leave the line out, or give it a user"),
         (HEAD + "a, ,1\n", "line 2: policy must be 1 to 200 printable characters"),
         (HEAD + f"{'a' * 201},p,1\n", "line 2: user must be 1 to 200 printable"),
         (HEAD + '"a\nb",p,1\n', "line 3: user must be 1 to 200 printable"),
@@ -147,7 +150,9 @@ def test_decimal_commas_latin_1_and_a_separator_by_option(written):
     form = LogFormat(decimal_comma=True, encoding="latin-1")
     log = read_log([written(text, encoding="latin-1")], form)
     assert (log.user.words, log.outcomes.tolist()) == (["Zoë", "Bo", "Cy"], [1.5, -0.25, 7.0])
-    with pytest.raises(InputError, match=r"line 3: outcome must have a comma before its decimals, got '1\.500'"):
+    with pytest.raises(
+        InputError, match=r"line 3: outcome must have a comma before its decimals, and no point .*, got '1\.500'"
+    ):
         read_log([written("user;policy;outcome\na;p;1,5\na;p;1.500\n")], LogFormat(decimal_comma=True))
     tabs = LogFormat(separator="tab")
     assert read_log([written("user\tpolicy\toutcome\na,b\tp\t1\n")], tabs).user.words == ["a,b"]
@@ -196,7 +201,7 @@ def test_what_is_missing_is_refused_with_its_line(written):
         read_log([written(GAPS)], LogFormat(missing=("NA",)))
     with pytest.raises(InputError, match="line 4: outcome is missing; --missing-outcome says"):
         read_log([written(GAPS)], LogFormat(missing=("NA",), missing_policy="leave-out", missing_outcome="refuse"))
-    with pytest.raises(InputError, match="got 'NA'; leave it empty if it is not known, or say --missing WORD"):
+    with pytest.raises(InputError, match=r"got 'NA'; .* leave it empty .*, or say --missing WORD"):
         read_log([written(HEAD + "a,p,NA\n")])
     with pytest.raises(InputError, match="missing_outcome must be leave-out, refuse or a number, got 'none'"):
         read_log([written(GAPS)], LogFormat(missing_outcome="none"))
@@ -267,7 +272,29 @@ def test_no_file_and_no_text(tmp_path, written):
         read_log([written(HEAD + "a,p,1\n", encoding="utf-16")])
 
 
-def test_an_outcome_is_a_finite_number():
+def test_an_outcome_is_a_finite_number_or_a_truth():
+    assert [read_outcome(word) for word in ("yes", "No", "TRUE", "false")] == [1, 0, 1, 0]
     assert read_outcome("-1e-3") == -0.001
     with pytest.raises(InputError, match="outcome must be a finite number, got '1,5'"):
         read_outcome("1,5")
+
+
+def test_a_wrong_number_with_a_decimal_comma_is_not_told_of_the_decimal_comma():
+    with pytest.raises(
+        InputError, match=r"comma before its decimals, and no point between thousands, got '1\.500,5'"
+    ):
+        read_outcome("1.500,5", decimal_comma=True)
+    with pytest.raises(InputError, match=r"got '1,5 €'$"):
+        read_outcome("1,5 €", decimal_comma=True)
+
+
+def test_whole_floats_of_a_table_are_the_names_that_a_file_has():
+    frame = {"user": [5.0, 6.5], "policy": [1.0, 2.0], "outcome": [1.0, 0.25]}
+    log = read_log(frame)
+    assert (log.user.words, log.policy.words, log.outcomes.tolist()) == (["5", "6.5"], ["1", "2"], [1.0, 0.25])
+
+
+def test_of_many_bad_lines_the_first_is_named(written):
+    text = HEAD + "".join(f"{'a' * (201 + number)},p,1\n" for number in range(40))
+    with pytest.raises(InputError, match="line 2: user must be 1 to 200 printable"):
+        read_log([written(text)])

@@ -153,11 +153,12 @@ def _equal_lines(log: ReuseLog) -> list[str]:
 
 
 def _spelt_twice(what: str, names: Sequence[str]) -> list[str]:
-    """Which names differ only in capitals or spaces at the ends."""
+    """Which names differ only in capitals, in spaces at the ends, or as whole numbers with and without ``.0``."""
     first: dict[str, str] = {}
-    twice = [(other, name) for name in names if (other := first.setdefault(name.strip().casefold(), name)) != name]
+    alike = ((name.strip().casefold().removesuffix(".0"), name) for name in names)
+    twice = [(other, name) for plain, name in alike if (other := first.setdefault(plain, name)) != name]
     return [
-        f"{what} differ only in capitals or spaces from others ({len(twice)}, as '{one}' and '{other}'); each "
-        "counts"
+        f"{what} differ only in capitals, spaces or a final .0 from others ({len(twice)}, as '{one}' and "
+        f"'{other}'); each counts"
         for one, other in twice[:1]
     ]

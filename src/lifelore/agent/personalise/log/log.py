@@ -270,6 +270,8 @@ def frame_format(form: LogFormat) -> LogFormat:
 
 
 def _word(value: Any) -> str:
+    """The word as a file has it: tables turn whole numbers into floats where a value of the column is missing."""
     if value is None:
         return ""
-    return str(int(value)) if isinstance(value, bool) else str(value)
+    whole = isinstance(value, bool) or (isinstance(value, float) and value.is_integer())
+    return str(int(value)) if whole else str(value)

@@ -16,6 +16,8 @@ WEIGHT = "weight"
 """Column of weights; read only where `columns` names it, because a log may have a column of that name."""
 SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t"}
 LEAVE_OUT, REFUSE = "leave-out", "refuse"
+TRUTHS = {"yes": 1.0, "true": 1.0, "no": 0.0, "false": 0.0}
+"""Words for outcomes of two values, in small letters."""
 FORMULAS = "=+-@\t\r"
 """First characters of what a spreadsheet takes for a formula."""
 
@@ -147,15 +149,19 @@ def unescaped(word: str) -> str:
 def read_outcome(
     text: str, where: str = "", hint: str = "", *, decimal_comma: bool = False, name: str = "outcome"
 ) -> float:
-    """A finite number of at most `LARGEST` in size; InputError, which names the column, for anything else."""
+    """A finite number of at most `LARGEST` in size, or of `TRUTHS`; else InputError, which names the column."""
     if decimal_comma and "." in text:
-        raise InputError(f"{where}{name} must have a comma before its decimals, got {text[:60]!r}")
+        raise InputError(
+            f"{where}{name} must have a comma before its decimals, and no point between thousands, "
+            f"got {text[:60]!r}"
+        )
     try:
         outcome = float(text.replace(",", ".") if decimal_comma else text)
     except ValueError:
-        outcome = math.nan
+        outcome = TRUTHS.get(text.strip().lower(), math.nan)
     if not math.isfinite(outcome):
-        hint = "; write decimals with a point, or say --decimal-comma" if "," in text else hint
+        if "," in text and not decimal_comma:
+            hint = "; write decimals with a point, or say --decimal-comma"
         raise InputError(f"{where}{name} must be a finite number, got {text[:60]!r}{hint}")
     if abs(outcome) > LARGEST:
         raise InputError(f"{where}{name} must be at most {LARGEST:g} in size, got {text[:60]!r}")

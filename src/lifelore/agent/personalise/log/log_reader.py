@@ -30,7 +30,7 @@ CHUNK = 1 << 16
 WORDS = ("user", "policy", *OPTIONAL, GROUP)
 COUNTED = ("pending", "filled_outcomes", "filled_policies", "without_policy")
 """Reasons for which lines are left out or filled; see `ReuseLog`."""
-HINT = "; leave it empty if it is not known, or say --missing WORD"
+HINT = "; yes and no count as 1 and 0; leave it empty if it is not known, or say --missing WORD"
 
 Ints = NDArray[np.int64]
 
@@ -166,24 +166,25 @@ class LogReader:
         codes, known = self.codes[name], self._known[name]
         if column is None:
             return np.full(len(line), codes.setdefault("", len(codes)))
-        for word in set(column).difference(known):
+        first = dict(zip(reversed(column), reversed(line.tolist()), strict=True))
+        for word in sorted(first.keys() - known.keys(), key=first.__getitem__):
             own = unescaped(word.strip())
             own = "" if own in self._missing else own
             if not own and name == "policy" and self._form.missing_policy != REFUSE:
                 known[word] = -1
                 continue
             if own or name in ("user", "policy"):
-                self._check(name, own, line[column.index(word)])
+                self._check(name, own, first[word])
             known[word] = codes.setdefault(own, len(codes))
         return np.fromiter(map(known.__getitem__, column), np.int64, len(column))
 
     def _check(self, name: str, word: str, line: int) -> None:
         where = f"{self._name} line {line}: "
-        if name == "policy" and not word:
-            raise InputError(
-                f"{where}policy must be 1 to {LONGEST_NAME} printable characters, got ''; --missing-policy says "
-                "what a missing policy means"
-            )
+        if not word:
+            hint = "leave the line out, or give it a user"
+            if name == "policy":
+                hint = "--missing-policy says what a missing policy means"
+            raise InputError(f"{where}{name} must be 1 to {LONGEST_NAME} printable characters, got ''; {hint}")
         check_name(where + name, word)
 
     def _without_policy(self, policies: Ints, absent: NDArray, here: NDArray) -> NDArray:

@@ -1,6 +1,7 @@
 // Pictures in SVG: curves, stacked columns, and a map with the arrows of a prior.
 
-const INK = "#22262b", GREY = "#5b636d", LIGHT = "#dfe3e8", PAPER = "#ffffff", BLUE = "#0072b2", ORANGE = "#e69f00";
+const INK = "var(--ink)", GREY = "var(--grey)", LIGHT = "var(--light)", PAPER = "var(--paper)", BLUE = "var(--blue)", ORANGE = "var(--orange)";
+const ON_ORANGE = "#22262b";
 const LEFT = 58, RIGHT = 12, TOP = 12, BOTTOM = 40, TEXT = 13;
 
 /** An SVG element with attributes and children. */
@@ -122,7 +123,7 @@ export function drawMap(container, map, goals, { near, words }) {
   const [left, top, right, bottom] = box;
   const inside = map.cells.filter(([row, column]) => column + 1 > left && column < right && row + 1 > top && row < bottom);
   const size = { viewBox: `${left} ${top} ${right - left} ${bottom - top}`, role: "img", "aria-label": words, class: "picture" };
-  const drawn = svg("svg", size, svg("rect", { x: left, y: top, width: right - left, height: bottom - top, fill: "#e9edf1" }));
+  const drawn = svg("svg", size, svg("rect", { x: left, y: top, width: right - left, height: bottom - top, fill: "var(--ground)" }));
   const floor = inside.map(([row, column]) => `M${column} ${row}h1v1h-1z`).join("");
   drawn.append(svg("path", { d: floor, fill: PAPER }));
   drawn.append(svg("path", { d: walls(inside), stroke: INK, "stroke-width": 0.14, "stroke-linecap": "round", fill: "none" }));
@@ -136,7 +137,7 @@ export function drawMap(container, map, goals, { near, words }) {
   for (const goal of goals) {
     const at = { cx: goal.column + 0.5, cy: goal.row + 0.5, r: (goal.chosen ? 0.95 : 0.6) * letters };
     drawn.append(svg("circle", { ...at, fill: goal.chosen ? ORANGE : PAPER, stroke: INK, "stroke-width": 0.12 }));
-    if (goal.chosen) drawn.append(svg("text", { x: at.cx, y: at.cy + 0.37 * letters, "text-anchor": "middle", "font-size": letters, "font-weight": 700, fill: INK }, goal.text));
+    if (goal.chosen) drawn.append(svg("text", { x: at.cx, y: at.cy + 0.37 * letters, "text-anchor": "middle", "font-size": letters, "font-weight": 700, fill: ON_ORANGE }, goal.text));
   }
   for (const { name, at: [row, column] } of map.names) {
     if (column + 1 < left || column > right || row + 1 < top || row > bottom) continue;

@@ -3,7 +3,7 @@
 import { ask, make } from "/static/shell/shell.js";
 import { drawCurves, drawMap, short } from "./drawing.js";
 
-const COLOURS = ["#0072b2", "#e69f00", "#007a59", "#b84f00", "#a3478a", "#5d4bb5", "#7a6a00"];
+const COLOURS = ["var(--blue)", "var(--orange)", "var(--green)", "var(--vermilion)", "var(--purple)", "#5d4bb5", "#7a6a00"];
 const LISTED = 12, GOALS = 8; // last tasks in the table, and last goals on the map
 const $ = (id) => document.getElementById(id);
 
@@ -91,7 +91,7 @@ function drawKnown(map, tasks, task) {
   const here = tasks.filter((one) => one.world === task.world && one.task <= task.task).slice(-GOALS);
   const goals = here.map((one) => ({ row: one.goal[0], column: one.goal[1], text: String(one.task), chosen: one === task }));
   const given = { observation: "the surroundings of a place", state: "the place" }[map.prior];
-  const about = given ? `An arrow shows where the prior, given ${given}, sends the agent; darker arrows have more probability.` : "There is no prior in memory.";
+  const about = given ? `An arrow shows where the prior, given ${given}, sends the agent; stronger arrows have more probability.` : "There is no prior in memory.";
   const words = `${short(map.known)} known places of a map of ${map.shape[0]} by ${map.shape[1]} cells. ${about}`;
   const near = $("part").value === "near" ? { row, column } : null;
   drawMap($("map"), map, goals, { near, words });

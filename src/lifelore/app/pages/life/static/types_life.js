@@ -3,8 +3,8 @@
 import { ask, make } from "/static/shell/shell.js";
 import { drawCurves, drawStacks, short } from "./drawing.js";
 
-const PALETTE = ["#0072b2", "#e69f00", "#007a59", "#b84f00", "#a3478a", "#56b4e9", "#7a6a00", "#5d4bb5", "#c2185b", "#3f7f3f"];
-const UNKNOWN = "an unknown type", UNKNOWN_COLOUR = "#8a929b", OTHERS = "#dfe3e8";
+const PALETTE = ["var(--blue)", "var(--orange)", "var(--green)", "var(--vermilion)", "var(--purple)", "var(--sky)", "#7a6a00", "#5d4bb5", "#c2185b", "#3f7f3f"];
+const UNKNOWN = "an unknown type", UNKNOWN_COLOUR = "#8a929b", OTHERS = "var(--light)";
 const SHOWN = 8; // types and contexts that are listed, the first ones
 const $ = (id) => document.getElementById(id);
 
@@ -42,9 +42,9 @@ function colours(family, task) {
 
 function drawLife(tasks, number) {
   const series = [
-    { name: "first episode", colour: "#0072b2", points: tasks.map((one) => [one.task, one.best - one.first]) },
-    { name: "last episode", colour: "#e69f00", dashed: true, points: tasks.map((one) => [one.task, one.best - one.last]) },
-    { name: "a new type was found", colour: "#a3478a", dots: true, points: tasks.filter((one) => one.new_type).map((one) => [one.task, one.best - one.first]) },
+    { name: "first episode", colour: "var(--blue)", points: tasks.map((one) => [one.task, one.best - one.first]) },
+    { name: "last episode", colour: "var(--orange)", dashed: true, points: tasks.map((one) => [one.task, one.best - one.last]) },
+    { name: "a new type was found", colour: "var(--purple)", dots: true, points: tasks.filter((one) => one.new_type).map((one) => [one.task, one.best - one.first]) },
   ].filter((one) => one.points.length);
   const words = `Points below the best possible return, by task, in ${plural(tasks.length, "task")}.`;
   drawCurves($("curve"), series, { x: "task", y: "points below the best", words });
@@ -68,8 +68,8 @@ function drawTask(task, colourOf) {
   });
   $("legend").replaceChildren(...names.map((name) => make("li", {}, swatch(colourOf(name)), name)), make("li", {}, swatch(OTHERS), "other types"));
   const returns = [
-    { name: "return", colour: "#0072b2", points: task.returns.map((value, i) => [i + 1, value]) },
-    { name: "best possible", colour: "#5b636d", dashed: true, points: task.returns.map((_, i) => [i + 1, task.best_return]) },
+    { name: "return", colour: "var(--blue)", points: task.returns.map((value, i) => [i + 1, value]) },
+    { name: "best possible", colour: "var(--grey)", dashed: true, points: task.returns.map((_, i) => [i + 1, task.best_return]) },
   ];
   const words = `Returns of ${plural(task.returns.length, "episode")}: from ${short(task.returns[0])} to ${short(task.returns.at(-1))}; best possible ${short(task.best_return)}.`;
   drawCurves($("episodes"), returns, { x: "episode", y: "return", words, height: 180 });

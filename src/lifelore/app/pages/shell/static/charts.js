@@ -4,9 +4,9 @@ import { make } from "/static/shell/shell.js";
 
 const NS = "http://www.w3.org/2000/svg";
 const WIDTH = 360, HEIGHT = 240, RIGHT = 12, TOP = 12, BOTTOM = 44;
-const INK = "#22262b", LIGHT = "#dfe3e8", PAPER = "#ffffff";
+const INK = "var(--ink)", LIGHT = "var(--light)", PAPER = "var(--paper)";
 const DASHES = ["", "7 4", "2 3", "9 3 2 3", "4 2", "1 2"];
-export const COLOURS = ["#0072b2", "#b84f00", "#007a59", "#a3478a", "#5b636d", "#8a6100"];
+export const COLOURS = ["var(--blue)", "var(--vermilion)", "var(--green)", "var(--purple)", "var(--grey)", "var(--orange)"];
 
 function draw(tag, attributes, text) {
   const element = document.createElementNS(NS, tag);

@@ -5,7 +5,7 @@ import { lineChart } from "/static/shell/charts.js";
 
 const $ = (id) => document.getElementById(id);
 const GROUPS = [["personal", "chosen by belief"], ["control", "control group"]];
-const COLOURS = { personal: "#0072b2", control: "#b84f00" };
+const COLOURS = { personal: "var(--blue)", control: "var(--vermilion)" };
 const EVIDENCE = 8; // outcomes whose evidence is listed
 
 /** Alarms, and curves of decisions, outcomes and their mean by hour or day. */
@@ -72,7 +72,7 @@ export function drawCalibration({ outcomes }) {
   const half = ci95.map((ends) => (ends ? (ends[1] - ends[0]) / 2 : null));
   const series = [
     { name: "observed", points: predicted.map((x, i) => [Number(x.toFixed(3)), observed[i]]), half },
-    { name: "as predicted", colour: "#5b636d", points: [[0, 0], [1, 1]] },
+    { name: "as predicted", colour: "var(--grey)", points: [[0, 0], [1, 1]] },
   ];
   const figure = lineChart({ title: "Outcomes: quantiles", xlabel: "level of the quantile", ylabel: "share at or below", series, xends: [0, 1] });
   figure.append(make("p", { class: "quiet" }, `${count(groups)} users; mean distance from the diagonal ${number(error)}.`));
@@ -114,7 +114,7 @@ function interval({ value, ci95 }, low, high) {
   const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   for (const [name, text] of Object.entries({ viewBox: "0 0 100 12", class: "interval", "aria-hidden": "true" })) svg.setAttribute(name, text);
   for (const [tag, attributes] of [
-    ["line", { x1: x(0), x2: x(0), y1: 0, y2: 12, stroke: "#5b636d", "stroke-dasharray": "2 1" }],
+    ["line", { x1: x(0), x2: x(0), y1: 0, y2: 12, stroke: "var(--grey)", "stroke-dasharray": "2 1" }],
     ["line", { x1: x(ci95[0]), x2: x(ci95[1]), y1: 6, y2: 6, stroke: COLOURS.personal, "stroke-width": 2 }],
     ["circle", { cx: x(value), cy: 6, r: 3, fill: COLOURS.personal }],
   ]) {
