@@ -19,19 +19,18 @@ _MORE = 1e-6
 """What a contradicted move costs beyond a move of the map: of equally short ways, that of the map is taken."""
 
 
-def remembered_record(place: Place, memory: Memory) -> Record | None:
-    """What memory holds about the moves of a building, or of an earlier version of it; None if it holds nothing.
+def remembered_record(place: Place, memory: Memory) -> Record:
+    """What memory holds about the moves of a building, or of an earlier version of it.
 
     Raises
     ------
     NotFoundError
-        Memory does not know the building, or knows moves of it by other settings alone.
+        Memory holds nothing of this building.
     """
     world, record = place.world, place.earlier.record if place.earlier else None
     if record is None or record.key != world.fingerprint:
         record = memory.recall(transitions.KIND, world.fingerprint, transitions.VERSION) or record
-    known = (about.get("building") for _, _, about in memory.keys(transitions.KIND))
-    if record is None and (not (place.report and place.report["recognised"]) or place.grid.building in known):
+    if record is None:
         settings = ", ".join(f"{name} {value:g}" for name, value in sorted(world.about.items()))
         raise NotFoundError(
             f"memory {memory.location} knows no moves of this building with {settings}; live there first "
@@ -40,14 +39,12 @@ def remembered_record(place: Place, memory: Memory) -> Record | None:
     return record
 
 
-def contradicted_moves(place: Place, record: Record | None, start: int, goal: int) -> NDArray[np.float64]:
+def contradicted_moves(place: Place, record: Record, start: int, goal: int) -> NDArray[np.float64]:
     """Points (n, 2) in metres, halfway on remembered moves that the map lacks and that would shorten the way.
 
     `start` and `goal` are states. Cells that the map no longer has count too, so that the points show a door that
     was closed since.
     """
-    if record is None:
-        return np.empty((0, 2))
     world, width = place.world, place.world.neighbour.shape[1] + 1
     source, column = record.slots // width, record.slots % width
     moved = (column < width - 1) & (record.values >= 0) & (record.values != source)

@@ -1,8 +1,4 @@
-"""A life of driven jobs: what the robot learns of its building, and the same jobs planned on the map alone.
-
-A building that is not busy (`LifeSettings.busy`) does as the map says, so that its simulated drives teach nothing.
-Memory learns names there, and where the robot stands.
-"""
+"""A life of driven jobs: what the robot learns of its building, and the same jobs planned on the map alone."""
 
 from threading import Event
 from typing import Any
@@ -56,8 +52,7 @@ class DrivenLife(GridLife):
         if self._compare:
             know_nothing = Travel(self.place.world, self.place.grid)
             results[MAP_ONLY] = self._drive(number, start, own.state, clock, know_nothing)
-        if self._busy is not None:
-            self._walked(first)
+        self._walked(first)
         stands = int(first.legs[-1][-1]) if first.legs else start
         self._clock = self._clock.at(clock + first.seconds, stands)
         records = [self.lore.model_news(), *self._travel.news(), self._clock.record(self.place)]
@@ -94,11 +89,7 @@ class DrivenLife(GridLife):
         def building(way: NDArray[np.int64], clock: float) -> Drive:
             return quiet_building(way, clock, world) if self._busy is None else self._busy.drive(way, clock, noise)
 
-        def observe(*moves: NDArray) -> None:
-            if self._busy is not None:
-                travel.observe(*moves)
-
-        return drive_job(world, start, goal, clock, lambda now: travel.costs(now).cost, building, observe)
+        return drive_job(world, start, goal, clock, lambda now: travel.costs(now).cost, building, travel.observe)
 
     def _map_metres(self, start: int, goal: int) -> float:
         """Length of the shortest route on the map; 0 where there is none."""
