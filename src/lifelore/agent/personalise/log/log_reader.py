@@ -23,7 +23,7 @@ from lifelore.agent.personalise.log.log_format import (
 )
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.outcome_rows import LARGEST
-from lifelore.memory.record_rules import LONGEST_NAME, check_name
+from lifelore.memory.record_rules import LONGEST_NAME, check_name, is_name
 
 CHUNK = 1 << 16
 """Lines taken in at a time; more need more memory, fewer more time."""
@@ -172,12 +172,12 @@ class LogReader:
             if not own and name == "policy" and self._form.missing_policy != REFUSE:
                 known[word] = -1
                 continue
-            if own or name in ("user", "policy"):
-                self._check(name, own, line[column.index(word)])
+            if (own or name in ("user", "policy")) and not is_name(own):
+                self._refuse(name, own, line[column.index(word)])
             known[word] = codes.setdefault(own, len(codes))
         return np.fromiter(map(known.__getitem__, column), np.int64, len(column))
 
-    def _check(self, name: str, word: str, line: int) -> None:
+    def _refuse(self, name: str, word: str, line: int) -> None:
         where = f"{self._name} line {line}: "
         if name == "policy" and not word:
             raise InputError(
