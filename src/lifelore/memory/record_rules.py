@@ -18,9 +18,14 @@ _sorted = json.JSONEncoder(sort_keys=True).encode
 _canonical = json.JSONEncoder(sort_keys=True, allow_nan=False, separators=(",", ":")).encode
 
 
+def is_name(name: Any) -> bool:
+    """Whether `name` is printable text of 1 to 200 characters, which both databases can store."""
+    return isinstance(name, str) and 0 < len(name) <= LONGEST_NAME and name.isprintable()
+
+
 def check_name(argument: str, name: str) -> str:
-    """Return `name` if it is printable text of 1 to 200 characters, which both databases can store."""
-    if not isinstance(name, str) or not 0 < len(name) <= LONGEST_NAME or not name.isprintable():
+    """Return `name` if it is one, by `is_name`."""
+    if not is_name(name):
         raise InputError(
             f"{argument} must be 1 to {LONGEST_NAME} printable characters, got {str(name)[:60]!r}; rename it"
         )

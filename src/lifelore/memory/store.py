@@ -20,6 +20,9 @@ REWRITTEN = 64 << 20
 to its owner."""
 CACHE_KIB = 32 * 1024
 """KiB of pages that a connection to an SQLite file keeps; more makes large studies faster."""
+_TEMPORARY = {False: "PRAGMA temp_store = FILE", True: "PRAGMA temp_store = MEMORY"}
+"""By whether a transaction changes few rows: where SQLite keeps pages of a part that may be undone, and sorts. A
+file makes a new row of a study cost a third more; reports and merges of any size stay out of main memory."""
 # Any fixed number, the same for all processes that write to a database.
 _WRITERS_LOCK = schema.APPLICATION_ID
 
@@ -54,6 +57,8 @@ class Store:
                 yield joint
             return
         with one_line_refusals(self.location), self.pool.connection() as conn:
+            if self.is_sqlite:
+                conn.control(_TEMPORARY[False])
             conn.control("BEGIN" if self.is_sqlite else "BEGIN ISOLATION LEVEL REPEATABLE READ")
             yield conn
             conn.control("ROLLBACK")
@@ -80,6 +85,7 @@ class Store:
             return
         with one_line_refusals(self.location), self.pool.connection() as conn:
             if self.is_sqlite:
+                conn.control(_TEMPORARY[rows])
                 conn.control("BEGIN IMMEDIATE")
             else:
                 wait = f"SET LOCAL lock_timeout = '{BUSY_SECONDS}s'"

@@ -9,7 +9,8 @@ import pytest
 from lifelore.agent.personalise.decisions import choose, forget, update
 from lifelore.agent.personalise.explanation import explain
 from lifelore.agent.personalise.fitting.fit import FitSettings, fit
-from lifelore.agent.personalise.past import Line, add_lines, parse_time, warm
+from lifelore.agent.personalise.log.log_format import parse_time
+from lifelore.agent.personalise.past import Line, add_lines, warm
 from lifelore.agent.personalise.study import NAMED_TYPE, open_study
 from lifelore.agent.personalise.study_report import report
 from lifelore.core.errors import InputError, NotFoundError

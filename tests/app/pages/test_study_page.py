@@ -62,6 +62,10 @@ def test_a_study_and_one_user_are_shown(serve_pages, open_page, check_page, wher
     expect(page.locator("#user")).to_contain_text("lively")
     expect(page.locator("#user b")).to_have_count(0)
     check_page(page)
+    for numbers in page.locator("summary").all():
+        numbers.click()
+    wide = "found => found.filter((one) => one.scrollWidth > one.clientWidth).map((one) => one.outerHTML)"
+    assert page.locator(".scroll").evaluate_all(wide) == []
 
 
 def test_the_first_outcome_of_a_study_is_drawn(serve_pages, open_page, tmp_path):

@@ -7,8 +7,8 @@ takes its logs' lines in place of those of the fit before; `warm` adds lines.
 
 import hashlib
 from collections import Counter
-from collections.abc import Iterable, Sequence
-from datetime import UTC, datetime
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import starmap
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,10 +20,7 @@ from lifelore.agent.personalise.study import Study, known_users, user_key
 from lifelore.core.errors import InputError
 from lifelore.memory import Memory
 from lifelore.memory.record_rules import check_name
-from lifelore.memory.study_rows import PastRow, StudyRows
-
-LARGEST_SECONDS = 1e11
-"""Numbers above are milliseconds: as seconds they would lie after the year 5000."""
+from lifelore.memory.study_rows import PastRow, StudyRows, UserRow
 
 
 class Line(NamedTuple):
@@ -107,8 +104,7 @@ def _stored(rows: StudyRows, study: Study, lines: Sequence[Line], *, fitted: boo
     users = known_users(rows, study, names, lock=True)
     if new := [name for name in names if name not in users]:
         users |= rows.add_users([(name, None, None) for name in new], 0)
-    told = [(users[name], _told(own, users[name])) for name, own in _told_by_user(lines).items()]
-    rows.describe((user.number, *own) for user, own in told if own != (user.context, user.features, user.type))
+    rows.describe(_described(lines, users))
     if fitted:
         rows.mark_fitted(user.number for user in users.values())
     ids = identities(study.name, lines)
@@ -120,47 +116,38 @@ def _stored(rows: StudyRows, study: Study, lines: Sequence[Line], *, fitted: boo
     }
     rows.add_past(new.values())
     changed = {row.person for row in new.values()}
-    rows.keep_beliefs(((number, None) for number in changed), 0)
+    if not fitted:  # `begin_fit` has made all beliefs out of date
+        rows.keep_beliefs(((number, None) for number in changed), 0)
     decisions = sum(id_ in own for id_ in ids)
     known = len(lines) - len(new) - decisions
     return {"rows": len(new), "users": len(changed), "known": known, "decisions": decisions}
 
 
-def _told_by_user(lines: Iterable[Line]) -> dict[str, Line]:
-    """Of each user the last context, features and type that a line names."""
-    told: dict[str, Line] = {}
-    for line in lines:
-        if line.context or line.features or line.type:
-            before = told.get(line.user, line)
-            told[line.user] = line._replace(
-                context=line.context or before.context,
-                features=line.features or before.features,
-                type=line.type or before.type,
-            )
-    return told
-
-
-def _told(line: Line, user: Any) -> tuple[str | None, dict[str, float] | None, str | None]:
-    return line.context or user.context, line.features or user.features, line.type or user.type
+def _described(lines: Sequence[Line], users: Mapping[str, UserRow]) -> Iterator[tuple[int, Any, Any, Any]]:
+    """The users of whom lines tell another context, features or type; the last line that names one counts."""
+    contexts = {line.user: line.context for line in lines if line.context}
+    features = {line.user: line.features for line in lines if line.features}
+    types = {line.user: line.type for line in lines if line.type}
+    for name, user in users.items():
+        now = contexts.get(name, user.context), features.get(name, user.features), types.get(name, user.type)
+        if now != (user.context, user.features, user.type):
+            yield user.number, *now
 
 
 def identities(study: str, lines: Sequence[Line]) -> list[bytes]:
     """The identity of each line, 16 bytes, in the order of the lines' times."""
-    seen: Counter[tuple[str, str, str]] = Counter()
+    seen: dict[str, int] = {}
     keys = {user: user_key(study, user) for user in {line.user for line in lines}}
     found = []
     for line in lines:
         if line.given:
             found.append(_given(line.given))
             continue
-        which = str(line.time) if line.time else repr(line.outcome)
-        key = keys[line.user], line.policy, which
-        seen[key] += 1
-        text = "\x1f".join((*key, str(seen[key])))
-        digest = bytearray(hashlib.sha256(text.encode()).digest()[:10])
-        digest[0] = 0x80 | digest[0] & 0x0F
-        digest[2] = 0x80 | digest[2] & 0x3F
-        found.append(max(0, line.time).to_bytes(6, "big") + bytes(digest))
+        text = f"{keys[line.user]}\x1f{line.policy}\x1f{line.time or repr(line.outcome)}"
+        seen[text] = number = seen.get(text, 0) + 1
+        drawn = hashlib.sha256(f"{text}\x1f{number}".encode()).digest()
+        marked = bytes((0x80 | drawn[0] & 0x0F, drawn[1], 0x80 | drawn[2] & 0x3F))  # as of a UUID of version 8
+        found.append(max(0, line.time).to_bytes(6, "big") + marked + drawn[3:10])
     return found
 
 
@@ -178,11 +165,13 @@ def each_line_once(log: ReuseLog) -> ReuseLog:
     The n-th of equal lines in one file is the n-th in another. Rows with neither a time nor an identifier stay.
     """
     new = np.ones(len(log), bool)
-    at = [parse_time(word) or word for word in log.time.names]
+    if not log.file.any():
+        return log.keeping(new, "repeated")
+    at = [time or word for time, word in zip(log.times, log.time.names, strict=True)]
     number, known = Counter[tuple[Any, ...]](), set[tuple[Any, ...]]()
     columns = (log.file, log.user.codes, log.policy.codes, log.time.codes, log.decision.codes)
     rows = zip(*(column.tolist() for column in columns), strict=True)
-    for row, (file, user, policy, time, decision) in enumerate(rows if log.file.any() else ()):
+    for row, (file, user, policy, time, decision) in enumerate(rows):
         given = log.decision.names[decision]
         if given or at[time]:
             which = (given,) if given else (user, policy, at[time])
@@ -195,44 +184,26 @@ def each_line_once(log: ReuseLog) -> ReuseLog:
 
 def lines_of(log: ReuseLog) -> list[Line]:
     """The rows of a log as lines."""
-    users, policies = log.user.words, log.policy.words
-    given, times, contexts, types = log.decision.words, log.time.words, log.context.words, log.type.words
-    at = {word: parse_time(word) for word in log.time.names}
-    names = log.feature_names
-    whole: list[bool] = np.isfinite(log.features).all(axis=1).tolist()  # pyright: ignore
-    lines, seen = [], Counter[tuple[str, str, str]]()
-    for row, outcome in enumerate(log.outcomes.tolist()):
-        time, identifier = at[times[row]], given[row]
-        if time is None:
+    users, policies, given, n = log.user.words, log.policy.words, log.decision.words, len(log)
+    times = [log.times[code] for code in log.time.codes.tolist()]
+    seen = Counter[tuple[str, str, str]]()
+    for row in [row for row in range(n) if times[row] is None]:
+        times[row] = 0
+        if not given[row]:
             # A word that is no time tells lines apart all the same; equal lines by their number.
-            which = users[row], policies[row], times[row]
-            if not identifier:
-                seen[which] += 1
-                identifier = "\x1f".join((*which, str(seen[which])))
-            time = 0
-        features = dict(zip(names, log.features[row].tolist(), strict=True)) if names and whole[row] else None
-        context, type_ = contexts[row] or None, types[row] or None
-        lines.append(Line(users[row], policies[row], outcome, time, identifier, context, features, type_))
-    return lines
+            which = users[row], policies[row], log.time.names[log.time.codes[row]]
+            seen[which] += 1
+            given[row] = "\x1f".join((*which, str(seen[which])))
+    features: list[dict[str, float] | None] = [None] * n
+    if log.feature_names:
+        for row in np.flatnonzero(np.isfinite(log.features).all(axis=1)).tolist():
+            features[row] = dict(zip(log.feature_names, log.features[row].tolist(), strict=True))
+    contexts, types = ([word or None for word in column.words] for column in (log.context, log.type))
+    columns = (users, policies, log.outcomes.tolist(), times, given, contexts, features, types)
+    return list(starmap(Line, zip(*columns, strict=True)))
 
 
 def unread_times(log: ReuseLog) -> list[str]:
     """The time of each row where it is a word that is no time."""
-    unread = {word for word in log.time.names if parse_time(word) is None}
-    return [word for word in log.time.words if word in unread]
-
-
-def parse_time(word: str) -> int | None:
-    """Milliseconds since 1970 of a date, of seconds or of milliseconds; 0 for no word, None for another word."""
-    if not word:
-        return 0
-    try:
-        number = float(word)
-        return int(number if abs(number) > LARGEST_SECONDS else 1000 * number)
-    except (ValueError, OverflowError):
-        pass
-    try:
-        moment = datetime.fromisoformat(word)
-    except ValueError:
-        return None
-    return int(1000 * (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp())
+    unread = np.array([time is None for time in log.times])[log.time.codes]
+    return [log.time.names[code] for code in log.time.codes[unread].tolist()]

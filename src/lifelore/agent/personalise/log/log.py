@@ -14,7 +14,7 @@ Other columns are ignored. Several logs are read as one. `LogFormat` reads logs 
 
 import csv
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations
@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.log.log_format import WEIGHT, LogFormat
+from lifelore.agent.personalise.log.log_format import WEIGHT, LogFormat, parse_time
 from lifelore.agent.personalise.log.log_reader import WORDS, LogReader
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.interaction.outcomes.frame_columns import FrameColumns, is_frame
@@ -51,8 +51,7 @@ class Column:
 
     def take(self, rows: NDArray[np.int64]) -> "Column":
         """The column of the rows at some places, and the names that they have."""
-        used, codes = np.unique(self.codes[rows], return_inverse=True)
-        return Column(tuple(self.names[code] for code in used.tolist()), codes.astype(np.int64))
+        return _column(self.names, self.codes[rows])
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,7 +113,12 @@ class ReuseLog:
     def keeping(self, rows: NDArray[np.bool_], others: str) -> "ReuseLog":
         """The log with some rows alone; the number of the others is in `counts` under the name `others`."""
         counts = self.counts | {others: int((~rows).sum())}
-        return replace(self.take(np.flatnonzero(rows)), counts=counts)
+        return replace(self if rows.all() else self.take(np.flatnonzero(rows)), counts=counts)
+
+    @cached_property
+    def times(self) -> list[int | None]:
+        """The `parse_time` of each name of the column of times."""
+        return [parse_time(word) for word in self.time.names]
 
     @cached_property
     def type_of_user(self) -> NDArray[np.int64]:
@@ -192,7 +196,7 @@ def _content(path: Path) -> bytes:
 
 def _log(reader: LogReader, form: LogFormat) -> ReuseLog:
     outcomes, file, line, words, numbers = reader.columns()
-    columns = {name: _column(reader.codes[name], codes) for name, codes in zip(WORDS, words, strict=True)}
+    columns = {name: _column(list(reader.codes[name]), rows) for name, rows in zip(WORDS, words, strict=True)}
     weights = numbers.pop(0) if WEIGHT in form.columns else None
     probability = numbers.pop(0) if form.probabilities else None
     return ReuseLog(
@@ -203,12 +207,13 @@ def _log(reader: LogReader, form: LogFormat) -> ReuseLog:
     )  # fmt: skip
 
 
-def _column(codes: Mapping[str, int], rows: NDArray[np.int64]) -> Column:
-    """The column of the words that rows have, sorted."""
-    words, (used, rows) = list(codes), np.unique(rows, return_inverse=True)
-    names = [words[code] for code in used.tolist()]
-    place = {name: number for number, name in enumerate(sorted(names))}
-    return Column(tuple(place), np.array([place[name] for name in names], np.int64)[rows])
+def _column(words: Sequence[str], rows: NDArray[np.int64]) -> Column:
+    """The column of rows that have places in `words`; its names are the words that a row has, sorted."""
+    used = np.flatnonzero(np.bincount(rows, minlength=len(words))).tolist()
+    used.sort(key=words.__getitem__)
+    number: NDArray[np.int64] = np.zeros(len(words), np.int64)
+    number[used] = np.arange(len(used))
+    return Column(tuple(words[place] for place in used), number[rows])
 
 
 def _check_types(log: ReuseLog, paths: Sequence[str]) -> None:

@@ -4,6 +4,7 @@ import codecs
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.outcomes.outcome_rows import LARGEST
@@ -18,6 +19,8 @@ SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t"}
 LEAVE_OUT, REFUSE = "leave-out", "refuse"
 TRUTHS = {"yes": 1.0, "true": 1.0, "no": 0.0, "false": 0.0}
 """Words for outcomes of two values, in small letters."""
+LARGEST_SECONDS = 1e11
+"""Numbers above are milliseconds: as seconds they would lie after the year 5000."""
 FORMULAS = "=+-@\t\r"
 """First characters of what a spreadsheet takes for a formula."""
 
@@ -166,3 +169,19 @@ def read_outcome(
     if abs(outcome) > LARGEST:
         raise InputError(f"{where}{name} must be at most {LARGEST:g} in size, got {text[:60]!r}")
     return outcome
+
+
+def parse_time(word: str) -> int | None:
+    """Milliseconds since 1970 of a date, of seconds or of milliseconds; 0 for no word, None for another word."""
+    if not word:
+        return 0
+    try:
+        number = float(word)
+        return int(number if abs(number) > LARGEST_SECONDS else 1000 * number)
+    except (ValueError, OverflowError):
+        pass
+    try:
+        moment = datetime.fromisoformat(word)
+    except ValueError:
+        return None
+    return int(1000 * (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp())

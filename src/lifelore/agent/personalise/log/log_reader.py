@@ -23,7 +23,7 @@ from lifelore.agent.personalise.log.log_format import (
 )
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.outcome_rows import LARGEST
-from lifelore.memory.record_rules import LONGEST_NAME, check_name
+from lifelore.memory.record_rules import LONGEST_NAME, check_name, is_name
 
 CHUNK = 1 << 16
 """Lines taken in at a time; more need more memory, fewer more time."""
@@ -166,19 +166,18 @@ class LogReader:
         codes, known = self.codes[name], self._known[name]
         if column is None:
             return np.full(len(line), codes.setdefault("", len(codes)))
-        first = dict(zip(reversed(column), reversed(line.tolist()), strict=True))
-        for word in sorted(first.keys() - known.keys(), key=first.__getitem__):
+        for word in [word for word in dict.fromkeys(column) if word not in known]:
             own = unescaped(word.strip())
             own = "" if own in self._missing else own
             if not own and name == "policy" and self._form.missing_policy != REFUSE:
                 known[word] = -1
                 continue
-            if own or name in ("user", "policy"):
-                self._check(name, own, first[word])
+            if (own or name in ("user", "policy")) and not is_name(own):
+                self._refuse(name, own, line[column.index(word)])
             known[word] = codes.setdefault(own, len(codes))
         return np.fromiter(map(known.__getitem__, column), np.int64, len(column))
 
-    def _check(self, name: str, word: str, line: int) -> None:
+    def _refuse(self, name: str, word: str, line: int) -> None:
         where = f"{self._name} line {line}: "
         if not word:
             hint = "leave the line out, or give it a user"

@@ -73,7 +73,7 @@ export function lineChart({ title, xlabel, ylabel, series, level = null, xticks 
     if (markers)
       for (const [x, y] of one.points) svg.append(draw("circle", { cx: px(x), cy: py(y), r: 3, fill: PAPER, stroke: look.colour, "stroke-width": 1.5 }));
   });
-  figure.append(svg, legend(series), table(xlabel, series, digits, xname));
+  figure.append(svg, legend(series), numbers(xlabel, series, digits, xname));
   return figure;
 }
 
@@ -87,15 +87,21 @@ function legend(series) {
   return list;
 }
 
-function table(xlabel, series, digits, xname) {
+function numbers(xlabel, series, digits, xname) {
   const xs = [...new Set(series.flatMap((one) => one.points.map(([x]) => x)))].sort((a, b) => a - b);
   const every = Math.ceil(xs.length / 25);
-  const shown = xs.filter((_, i) => i % every === 0 || i === xs.length - 1);
-  const head = make("tr", {}, make("th", { scope: "col" }, xlabel), ...series.map((one) => make("th", { scope: "col", class: "number" }, one.name)));
-  const rows = shown.map((x) => make("tr", {}, make("th", { scope: "row" }, xname(x)), ...series.map((one) => {
+  const rows = xs.filter((_, i) => i % every === 0 || i === xs.length - 1).map((x) => [xname(x), ...series.map((one) => {
     const point = one.points.find(([at]) => at === x);
-    return make("td", { class: "number" }, point ? point[1].toFixed(digits) : "–");
-  })));
-  const grid = make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows));
+    return point ? point[1].toFixed(digits) : "–";
+  })]);
+  const grid = table([xlabel, ...series.map((one) => one.name)], rows);
   return make("details", {}, make("summary", {}, "The numbers"), make("div", { class: "scroll" }, grid));
+}
+
+/** A table whose first column names the rows; the others are right-aligned where they begin with a number. A narrow window shows a cell's head beside it. */
+export function table(heads, rows) {
+  const numeric = heads.map((_, k) => k > 0 && rows.every((row) => typeof row[k] !== "string" || /^[-−+–\d][^/]*$|^no |^not |^too|^by|^imp/.test(row[k])));
+  const look = (k) => (numeric[k] ? { class: "number" } : {});
+  const cells = (row) => row.map((cell, k) => make(k ? "td" : "th", k ? { ...look(k), "data-head": heads[k] } : { scope: "row" }, cell));
+  return make("table", { class: "pairs" }, make("thead", {}, make("tr", {}, ...heads.map((head, k) => make("th", { scope: "col", ...look(k) }, head)))), make("tbody", {}, ...rows.map((row) => make("tr", {}, ...cells(row)))));
 }

@@ -1,7 +1,7 @@
 // The parts of the page /study, drawn from answers of the service.
 
 import { make, say } from "/static/shell/shell.js";
-import { lineChart } from "/static/shell/charts.js";
+import { lineChart, table } from "/static/shell/charts.js";
 
 const $ = (id) => document.getElementById(id);
 const GROUPS = [["personal", "chosen by belief"], ["control", "control group"]];
@@ -98,14 +98,6 @@ export function drawUser(user) {
     make("h3", {}, "Evidence of the last outcomes"), make("p", { class: "quiet" }, "Log likelihood of each type less that of the best, in nats: 0 is the type that the outcome speaks for."),
     make("div", { class: "scroll", tabindex: "0" }, table(["Policy", ...types], evidence)),
   );
-}
-
-/** A table whose first column names the rows; the others are right-aligned where they begin with a number. */
-function table(heads, rows) {
-  const numeric = heads.map((_, k) => k > 0 && rows.every((row) => typeof row[k] !== "string" || /^[-−+–\d][^/]*$|^no |^not |^too|^by|^imp/.test(row[k])));
-  const look = (k) => (numeric[k] ? { class: "number" } : {});
-  const cells = (row) => row.map((cell, k) => make(k ? "td" : "th", k ? look(k) : { scope: "row" }, cell));
-  return make("table", {}, make("thead", {}, make("tr", {}, ...heads.map((head, k) => make("th", { scope: "col", ...look(k) }, head)))), make("tbody", {}, ...rows.map((row) => make("tr", {}, ...cells(row)))));
 }
 
 /** A dot with its interval between two ends, and a line at 0. */
