@@ -100,6 +100,7 @@ def test_the_contract_names_these_commands():
         "add",
         "forget",
         "studies",
+        "adapt",
     )
     verbs |= {f"reuse {verb}" for verb in reuse}
     assert {" ".join(path) for path in COMMANDS} == verbs

@@ -368,6 +368,52 @@ def studies(
     say({"studies": listed}, "\n".join(lines) or "no study; begin with 'lifelore reuse fit'", as_json)
 
 
+@reuse.command()
+def adapt(
+    library: Annotated[
+        str,
+        typer.Argument(metavar="LIBRARY", help="Action sets by types: a JSON file, or one of PolicyLibrary.save."),
+    ],
+    watch: Annotated[
+        str,
+        Option(
+            metavar="FILE",
+            help='JSON lines {"user", "action_set", "signal"}; {"user"} alone asks before the first move; '
+            "- is stdin.",
+        ),
+    ] = "-",
+    epsilon: Annotated[
+        str, Option(metavar="NUMBER|1/n|by episode", help="Share of exploration; the words are the thesis's.")
+    ] = "0",
+    name: Annotated[str, Option(help="Name of the adaptation in memory.")] = "default",
+    where: Where = None,
+    seed: Seed = 0,
+    as_json: AsJson = False,
+) -> None:
+    """Adapt an interface to each user, step by step (BEAT).
+
+    Each JSON line of input, a move of a user, gives one JSON line with the action set for the next step. Use it
+    where each step shows the user's type. Memory stores the beliefs; with another library they start again. The
+    line {"user": "ada", "forget": true} deletes what is stored of a user.
+    """
+    from lifelore.agent.personalise import adaptation
+    from lifelore.app.console import print_json_line
+    from lifelore.core.json_lines import lines_of
+    from lifelore.memory import open_memory
+
+    with open_memory(where, durable=True) as memory:
+        registered = adaptation.register_adaptation(
+            memory, name, adaptation.read_library(library), _number_or_name(epsilon)
+        )
+        lines = lines_of(watch)
+        chosen = adaptation.adapt(memory, registered, lines, "stdin" if watch == "-" else watch, seed)
+        if as_json:
+            print_json({"adaptation": name, "steps": list(chosen)})
+            return
+        for one in chosen:
+            print_json_line(one)  # The caller waits for this line before the user's next step.
+
+
 @contextmanager
 def _opened(name: str, where: str | None) -> "Iterator[tuple[Memory, Study]]":
     from lifelore.agent.personalise.study import open_study
@@ -387,6 +433,13 @@ def _change(given: str) -> Any:
         return float(given)
     except ValueError:
         raise InputError(f"--change must be a probability or 'learnt', got {given!r}") from None
+
+
+def _number_or_name(given: str) -> float | str:
+    try:
+        return float(given)
+    except ValueError:
+        return given
 
 
 def _print_fit(document: dict[str, Any]) -> None:

@@ -1,11 +1,7 @@
 """BEAT over HTTP: as the learner in this process, each move once, also after a restart."""
 
-import base64
-
 import numpy as np
 import pytest
-
-from lifelore.interaction import Beat
 
 LIBRARY = {
     "types": ["steady", "shaky"], "policies": ["slow", "fast"],
@@ -74,11 +70,3 @@ def test_a_forgotten_user_starts_from_the_prior(game):
         assert game.delete(USER).json()["forgotten"] == 4
         assert game.delete(USER).status_code == 404
         assert game.get(USER).json()["step"] == 0
-
-
-def test_the_library_of_a_learner_is_registered_as_a_file(game):
-    transitions = np.array([[[[0.9, 0.1], [0.5, 0.5]]] * 2, [[[0.2, 0.8], [0.5, 0.5]]] * 2]).reshape(2, 2, 2, 2)
-    beat = Beat.from_tasks(transitions, np.ones((2, 2, 2)), {"fast": [0, 1], "slow": [1]}, 0.9)
-    library = {"file": base64.b64encode(beat.library.to_bytes()).decode()}
-    assert game.put("/v1/adaptations/game", json={"library": library}).json()["policies"] == ["fast", "slow"]
-    assert move(game, 0, [("fast", [[0, 1, 1]])]).json()["step"] == 1

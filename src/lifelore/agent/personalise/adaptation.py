@@ -7,14 +7,18 @@ The choice follows from the belief, the seed and the number of the step, so that
 Moves are numbered, so that moves that come twice count once. Thesis: §4.8.4, Alg. 9.
 """
 
-from collections.abc import Sequence
+import json
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from lifelore.agent.personalise.registration import library_of
 from lifelore.agent.personalise.study import ADAPTATION, check_study_name
+from lifelore.core.atomic_write import read_file
 from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.core.json_lines import Lines, read_objects
 from lifelore.core.streams import stream
 from lifelore.interaction.adaptation.beat import Beat, rule_at
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -79,6 +83,71 @@ def open_adaptation(memory: Memory, name: str) -> Adaptation:
     return Adaptation(name, library, found.about["epsilon"], found.number, found.version)
 
 
+def read_library(path: str) -> PolicyLibrary:
+    """The library of a file: that of `PolicyLibrary.save`, or the JSON fields of `library_of`.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or is neither.
+    """
+    content = read_file(path, "the library")
+    if not content.lstrip().startswith(b"{"):
+        return PolicyLibrary.from_bytes(content, path)
+    try:
+        return library_of(json.loads(content))
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    except (ValueError, RecursionError):
+        raise InputError(
+            f"{path} must be one JSON object, or a file of PolicyLibrary.save, got other text"
+        ) from None
+
+
+def adapt(
+    memory: Memory, adaptation: Adaptation, lines: Lines, name: str = "moves", seed: int = 0
+) -> Iterator[dict[str, Any]]:
+    """The action set for the next step of a user after each line, as `select` returns it.
+
+    A line is an object: ``{"user": …}`` asks before the first move; ``{"user": …, "action_set": …, "signal": …}``
+    stores a move first. ``"step"``, the number of the move from 0, makes a move that comes twice count once.
+    ``"ends_episode": true`` ends an episode with the move. ``{"user": …, "forget": true}`` deletes all that is
+    stored of the user.
+
+    Raises
+    ------
+    InputError
+        A line is no such object or breaks a rule; the lines before it are stored.
+    """
+    for number, line in read_objects(lines, name):
+        try:
+            user = line.pop("user", None)
+            if not isinstance(user, str) or not user:
+                raise InputError(f"user must be a name, got {user!r}")
+            if line == {"forget": True}:
+                yield {"user": user, "forgotten": forget_adaptation(memory, adaptation, user)}
+                continue
+            if line:
+                _learn_line(memory, adaptation, user, line)
+            yield select(memory, adaptation, user, seed)
+        except (InputError, NotFoundError) as error:
+            raise type(error)(f"{name} line {number}: {error}") from None
+
+
+def _learn_line(memory: Memory, adaptation: Adaptation, user: str, line: dict[str, Any]) -> None:
+    """Store the move of a line of `adapt`."""
+    step, ends = line.pop("step", None), line.pop("ends_episode", False)
+    if line.keys() != {"action_set", "signal"}:
+        fields = "user, action_set, signal[, step, ends_episode]"
+        raise InputError(f"a move must have {fields}, got {', '.join(['user', *line])}")
+    if step is not None and (isinstance(step, bool) or not isinstance(step, int) or step < 0):
+        raise InputError(f"step must be a whole number from 0, got {step!r}")
+    if not isinstance(ends, bool):
+        raise InputError(f"ends_episode must be true or false, got {ends!r}")
+    moves = [(line["action_set"], line["signal"])]
+    learn_moves(memory, adaptation, user, step, moves, ends_episode=ends)
+
+
 def select(memory: Memory, adaptation: Adaptation, user: str, seed: int = 0) -> dict[str, Any]:
     """The action set for a user's next step; nothing is stored.
 
@@ -108,7 +177,7 @@ def learn_moves(
     memory: Memory,
     adaptation: Adaptation,
     user: str,
-    step: int,
+    step: int | None,
     moves: Sequence[tuple[str, Any]],
     *,
     ends_episode: bool = False,
@@ -117,8 +186,8 @@ def learn_moves(
 
     Parameters
     ----------
-    step : int
-        Number of the first of the moves, from 0.
+    step : int, optional
+        Number of the first of the moves, from 0; None: they follow those that are stored.
     moves : sequence of (action set, signal)
     ends_episode : bool
         Whether the last of the moves ends an episode.
@@ -145,11 +214,12 @@ def learn_moves(
         if known is None:
             raise StoreError(f"memory {memory.location}: the user was forgotten at this moment; try again")
         beat = _beat(adaptation, known)
-        if step + len(moves) <= beat.step:
+        first = beat.step if step is None else step
+        if first + len(moves) <= beat.step:
             return {"user": user, "taken": False, **_state(adaptation, beat)}
-        if step != beat.step:
+        if first != beat.step:
             raise InputError(
-                f"step must be {beat.step}, the number of moves so far, got {step}; give the moves from there"
+                f"step must be {beat.step}, the number of moves so far, got {first}; give the moves from there"
             )
         for action_set, signal in moves:
             beat.update(action_set, signal)
