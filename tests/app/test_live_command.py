@@ -288,32 +288,6 @@ def test_every_setting_says_what_it_means(ask):
         assert all(row["meaning"] in line for row, line in zip(rows, lines[1:], strict=True))
 
 
-@pytest.mark.parametrize(
-    ("options", "line"),
-    [
-        (("--set", "episode=1"), "no setting has the key 'episode'; near: episodes"),
-        (("--set", "tasks=3"), "tasks is an option: --tasks"),
-        (("--set", "spare=1"), "spare applies to jobs with hidden types alone (tabletop, factory-customers"),
-        (("--domain", "tabletop", "--set", "cell=1"), "cell does not apply to domain tabletop; leave it out"),
-        (("--set", "alpha0=0"), "alpha0 must be positive"),
-        (("--set", "cell"), "--set takes KEY=VALUE, got 'cell'"),
-    ],
-)
-def test_a_wrong_setting_is_one_line(options, line, ask):
-    assert line in ask("live", "--memory", "none.db", *options).refusal
-    assert not Path("none.db").exists()
-
-
-def test_help_is_one_screen(ask, monkeypatch):
-    monkeypatch.setenv("COLUMNS", "80")
-    lines = ask("live", "--help").out.splitlines()
-    assert len(lines) <= 40
-    assert all(len(line) <= 80 for line in lines)
-    options = [line.split()[0] for line in lines if line.startswith("  --")]
-    assert len(options) == 16
-    assert options[-1] == "--help"
-
-
 @pytest.mark.slow
 def test_a_log_that_cannot_be_written_is_named(ask):
     said = ask("live", "--tasks", 1, "--memory", "life.db", "--log", "none/life.mcap", "--set", "compare=false")
