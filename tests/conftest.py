@@ -82,11 +82,14 @@ def server() -> Iterator[str]:
     """The URL of a PostgreSQL server that lives as long as the tests.
 
     Its folder is none of pytest's: the server runs as another user if the tests run as root, and each start of
-    another pytest closes the folders of this one to other users.
+    another pytest closes the folders of this one to other users. The server does not start where the folder's name
+    has a space or is longer than a socket's may be.
     """
+    temporary = tempfile.gettempdir()
+    place = "/tmp" if " " in temporary or len(temporary) > 60 else temporary
     with (
         pytest.MonkeyPatch.context() as patch,
-        tempfile.TemporaryDirectory(prefix="lifelore-tests-", ignore_cleanup_errors=True) as folder,
+        tempfile.TemporaryDirectory(prefix="lifelore-tests-", dir=place, ignore_cleanup_errors=True) as folder,
     ):
         Path(folder).chmod(0o755)
         (Path(folder) / "runtime").mkdir(mode=0o700)
