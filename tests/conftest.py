@@ -2,6 +2,7 @@
 
 import gc
 import itertools
+import os
 import re
 import tempfile
 from collections.abc import Callable, Iterator
@@ -11,6 +12,8 @@ from typing import Any
 import psycopg
 import pytest
 from hypothesis import HealthCheck, settings
+
+from lifelore.core.compiled import kernel_cache
 
 Places = Callable[[str], str]
 SLOW = ("reproduction", "benchmarks", "app", "figures")
@@ -26,6 +29,11 @@ QUICK = (
 
 # As the program itself does: imported modules and collected tests all stay, so the collector finds little garbage.
 gc.set_threshold(100_000)
+
+# Where nothing can be stored in the user's cache, the processes of the tests share one that ends with them.
+if kernel_cache.kernel_folder(Path(kernel_cache.__file__).with_name("random_state.py")) is None:
+    kernels = tempfile.TemporaryDirectory(prefix="lifelore-kernels-", ignore_cleanup_errors=True)
+    os.environ["NUMBA_CACHE_DIR"] = kernels.name
 
 # On a busy machine, or where a kernel is compiled on its first call, an example takes as long as it takes.
 PATIENT = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -82,11 +90,14 @@ def server() -> Iterator[str]:
     """The URL of a PostgreSQL server that lives as long as the tests.
 
     Its folder is none of pytest's: the server runs as another user if the tests run as root, and each start of
-    another pytest closes the folders of this one to other users.
+    another pytest closes the folders of this one to other users. The server does not start where the folder's name
+    has a space or is longer than a socket's may be.
     """
+    temporary = tempfile.gettempdir()
+    place = "/tmp" if " " in temporary or len(temporary) > 60 else temporary
     with (
         pytest.MonkeyPatch.context() as patch,
-        tempfile.TemporaryDirectory(prefix="lifelore-tests-", ignore_cleanup_errors=True) as folder,
+        tempfile.TemporaryDirectory(prefix="lifelore-tests-", dir=place, ignore_cleanup_errors=True) as folder,
     ):
         Path(folder).chmod(0o755)
         (Path(folder) / "runtime").mkdir(mode=0o700)

@@ -72,6 +72,16 @@ def test_importing_the_package_imports_nothing_heavy():
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip() == "[]"
 
 
+def test_importing_the_worlds_registers_them_and_imports_nothing_beside_gymnasium():
+    code = (
+        "import sys, gymnasium; before = set(sys.modules); import lifelore.domains; "
+        "assert 'lifelore/Building-v0' in gymnasium.registry; "
+        "print({name.split('.')[0] for name in set(sys.modules) - before})"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "{'lifelore'}\n"
+
+
 def test_every_public_method_and_property_is_documented():
     classes = [value for name in lifelore.__all__ if inspect.isclass(value := getattr(lifelore, name))]
     members = [

@@ -1,9 +1,11 @@
 """`lifelore` as a whole: nothing heavy for its help, one line for a mistake, and what every command has."""
 
 import ast
+import re
 import subprocess
 import sys
 from importlib.metadata import entry_points
+from pathlib import Path
 
 import pytest
 import typer
@@ -11,6 +13,8 @@ import typer
 import lifelore
 from lifelore.app import command_line
 from lifelore.domains.worlds import domain_names
+
+COMMANDS_PAGE = Path(__file__).parents[2] / "docs" / "commands.md"
 
 HEAVY = ("numba", "sklearn", "matplotlib", "sqlite3", "scipy", "gymnasium", "numpy")
 TOLD_WHAT_IT_IMPORTED = """
@@ -83,31 +87,18 @@ def test_help_lists_every_domain(ask):
 
 
 COMMANDS = dict(leaves(typer.main.get_command(command_line.app)))
+LONG_HELP = {("reuse", "fit"): 58, ("reuse", "evaluate"): 62}
+"""Lines of the help texts that exceed a screen."""
 
 
-def test_the_contract_names_these_commands():
-    verbs = {"live", "explain", "way", "recognise", "perceive", "learn-relations", "scenes", "learn-from", "teach"}
-    verbs |= {"advise", "reproduce", "doctor", "serve", "version"}
-    verbs |= {f"memory {verb}" for verb in ("show", "export", "nav2", "import", "merge", "forget")}
-    reuse = (
-        "fit",
-        "warm",
-        "choose",
-        "update",
-        "report",
-        "evaluate",
-        "retire",
-        "add",
-        "forget",
-        "studies",
-        "adapt",
-    )
-    verbs |= {f"reuse {verb}" for verb in reuse}
-    assert {" ".join(path) for path in COMMANDS} == verbs
+def test_the_page_of_commands_lists_every_command_and_no_other():
+    rows = re.findall(r"^\| *`lifelore ([a-z0-9 -]+)` *\|", COMMANDS_PAGE.read_text("utf-8"), re.MULTILINE)
+    assert sorted(rows) == sorted(map(" ".join, COMMANDS))
 
 
 @pytest.mark.parametrize("path", COMMANDS, ids=" ".join)
-def test_every_command_has_json_and_says_what_it_is(path, ask):
+def test_every_command_has_json_and_says_what_it_is_on_a_screen(path, ask, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
     command = COMMANDS[path]
     assert "--json" in {name for parameter in command.params for name in parameter.opts}
     assert len(command.help.split()) >= 3
@@ -115,6 +106,9 @@ def test_every_command_has_json_and_says_what_it_is(path, ask):
     answer = ask(*path, "--help")
     assert (answer.status, answer.err) == (0, "")
     assert "--json" in answer.out
+    lines = answer.out.splitlines()
+    assert len(lines) <= LONG_HELP.get(path, 41)
+    assert max(map(len, lines)) <= 80
 
 
 @pytest.mark.parametrize("unbuffered", ["", "1"])

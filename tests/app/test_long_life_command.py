@@ -60,6 +60,10 @@ def test_explain_reads_a_task_of_a_world_of_ones_own(ask, where):
         (["live", "--domain", "factory-customers", "--agent", "lore"], "agent must be one of full"),
         (["live", "--domain", "factory-customers", "--set", "spare=1", "--agent", "scratch"], "must be full"),
         (["live", "--domain", "building", "--set", "spare=1"], "applies to jobs with hidden types alone"),
+        (
+            ["live", "--domain", "factory-customers", "--set", "cell=1"],
+            "cell does not apply to domain factory-cus",
+        ),
         (["live", "--domain", "building-days", "--tasks", "0"], "tasks must be at least 1"),
         (["explain", "9"], "has no task 9"),
     ],

@@ -14,15 +14,8 @@ def pixels(picture, colour) -> int:
 
 def test_every_world_of_the_thesis_has_its_plate(tmp_path):
     plates = list(pictures())
-    assert [title.split("(")[1] for title, _ in plates] == [
-        "3.2)",
-        "3.4)",
-        "3.4)",
-        "3.6)",
-        "3.10)",
-        "3.10)",
-        "3.20)",
-    ]
+    numbers = "".join(title[title.index("(") :] for title, _ in plates)
+    assert numbers == "(3.2)(3.4)(3.4)(3.6)(3.10)(3.10)(3.20)"
     for _, picture in plates[1:3]:
         assert pixels(picture, GOAL_COLOUR) == (640 // 23) ** 2
         assert pixels(picture, AGENT_COLOUR) > 0

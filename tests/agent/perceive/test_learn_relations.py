@@ -4,13 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from lifelore.agent.perceive.learn_relations import LearnRelationsSettings, learn_relations
 from lifelore.agent.perceive.relation_memory import (
     EXAMPLES,
-    as_bytes,
     as_words,
     model_key,
     recall_model,
@@ -156,14 +153,6 @@ def test_a_place_that_cannot_be_written_is_refused_before_the_work(folder):
     for out in (folder / "d.npz", folder / "none" / "m.npz"):
         with pytest.raises(InputError, match="out must be a file"):
             learn_relations(lesson, out=str(out), progress=lambda *step: pytest.fail("worked"))
-
-
-@settings(deadline=None)
-@given(st.binary(max_size=100), st.binary(max_size=50))
-def test_bytes_there_and_back_whatever_lies_behind(content, older):
-    words = as_words(content)
-    assert words.dtype == np.int64
-    assert as_bytes(np.concatenate([words, as_words(older)])) == content
 
 
 def lesson(folder, scenes: str, file: str, **more) -> LearnRelationsSettings:

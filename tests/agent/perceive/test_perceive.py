@@ -173,12 +173,6 @@ def test_a_memory_that_is_not_there_is_not_made(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("model", [None, "mine.npz"])
-def test_a_memory_that_would_not_be_asked_is_refused(model):
-    with pytest.raises(InputError, match="leave memory out"):
-        PerceiveSettings(model=model, memory="m.db")
-
-
 def test_a_cut_that_would_not_be_made_is_refused(pile):
     with pytest.raises(InputError, match="leave it out"):
         perceive(pile, PerceiveSettings(segmentation=SegmentationSettings()))

@@ -2,18 +2,18 @@
 
 import json
 import re
-import struct
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
-from urllib.request import Request, urlopen
 
 import numpy as np
 import pytest
+from PIL import Image
 
 pytest.importorskip("fastapi", reason="needs the extra web")
 pytest.importorskip("playwright", reason="needs the extra browser")
 
-from playwright.sync_api import Browser, Page, Route, expect
+from playwright.sync_api import Browser, Locator, Page, Route, expect
 
 from lifelore.agent.perceive.perceive import PerceiveSettings, perceive
 from lifelore.perception.clouds.cloud_file import read_cloud
@@ -34,14 +34,20 @@ def shown(page: Page, text: str) -> None:
     expect(page.locator("#summary")).to_contain_text(text, timeout=LOADED)
 
 
+def seen(part: Locator) -> np.ndarray:
+    """Colours of a part of the page, (rows, columns, 3)."""
+    return np.asarray(Image.open(BytesIO(part.screenshot())).convert("RGB"), int)
+
+
 def pixels(page: Page, colour: tuple[int, int, int], apart: int = 24) -> int:
     """Number of pixels of the picture that are nearly of a colour."""
-    from io import BytesIO
+    return int((np.abs(seen(page.locator("#view canvas")) - colour).max(axis=2) < apart).sum())
 
-    from PIL import Image
 
-    picture = np.asarray(Image.open(BytesIO(page.locator("#view canvas").screenshot())).convert("RGB"), int)
-    return int((np.abs(picture - colour).max(axis=2) < apart).sum())
+def end_of_blue(part: Locator) -> float:
+    """Share of the width of a part of the page at which its last blue pixel lies."""
+    colours = seen(part)
+    return np.flatnonzero((colours[..., 2] - colours[..., 0] > 100).any(axis=0)).max() / colours.shape[1]
 
 
 def drop(page: Page, name: str, content: bytes) -> None:
@@ -117,9 +123,12 @@ def test_doubtful_relations_fall_below_the_least_confidence(address: str, open_p
         "#relations .bar", "bars => bars.map(b => b.firstChild.offsetWidth / b.offsetWidth)"
     )
     assert shares == pytest.approx(expected, abs=0.02)
-    page.locator("#least").focus()
+    track = page.locator("#least")
+    assert end_of_blue(track) < 0.16  # a thumb is 16 of some 130 pixels wide
+    track.focus()
     page.keyboard.press("End")
     expect(page.locator("#least-value")).to_have_text("100 %")
+    assert end_of_blue(track) > 0.97
     for _ in range(10):
         page.keyboard.press("ArrowLeft")
     expect(page.locator("#least-value")).to_have_text("90 %")
@@ -212,8 +221,6 @@ def test_own_files_are_analysed_with_their_warnings(address: str, open_page: Ope
 
 def depth_image(folder: Path) -> dict[str, Path]:
     """Files of a table seen from above with two blocks that touch: depth, camera, colours and masks."""
-    from PIL import Image
-
     depth, masks = np.full((240, 320), 1000, np.uint16), np.zeros((240, 320), np.uint8)
     depth[80:160, 100:160], depth[80:160, 160:220] = 900, 860
     masks[80:160, 100:160], masks[80:160, 160:220] = 5, 9
@@ -297,27 +304,6 @@ def test_the_parts_of_a_depth_image_are_dropped_one_by_one(address: str, open_pa
     expect(message).to_contain_text("second.png is a depth image")
 
 
-def test_the_thumb_of_the_confidence_is_at_the_end_of_its_track(address: str, open_page: Opened):
-    from io import BytesIO
-
-    from PIL import Image
-
-    page = open_page(address + "/see")
-    shown(page, TOWER)
-
-    def blue() -> np.ndarray:
-        """Share of the track's width at which each blue pixel lies: the thumb, and the track up to it."""
-        picture = np.asarray(Image.open(BytesIO(page.locator("#least").screenshot())).convert("RGB"), int)
-        columns = np.flatnonzero(((picture[..., 2] - picture[..., 0]) > 100).any(axis=0))
-        return columns / picture.shape[1]
-
-    assert blue().max() < 0.16  # a thumb is 16 of some 130 pixels wide
-    page.locator("#least").focus()
-    page.keyboard.press("End")
-    expect(page.locator("#least-value")).to_have_text("100 %")
-    assert blue().max() > 0.97
-
-
 def test_a_damaged_file_is_one_line_and_clears_the_scene(address: str, browser: Browser):
     # Not by `open_page`: the browser itself logs each answer that is an error.
     with browser.new_context(viewport=DESKTOP) as context:  # pyright: ignore[reportArgumentType]
@@ -375,31 +361,6 @@ def test_without_webgl_the_picture_is_flat_and_does_the_same(
     expect(page.locator("#objects button[aria-pressed=true]")).to_have_count(1)
 
 
-def test_the_bytes_hold_the_points_and_the_document_of_perceive(address: str):
-    content = (EXAMPLES / "tower.pcd").read_bytes()
-    asked = Request(f"{address}/v1/perceive/points?format=pcd", content)
-    asked.add_header("Content-Type", "application/octet-stream")
-    with urlopen(asked) as answer:
-        body = answer.read()
-    (n,) = struct.unpack("<I", body[:4])
-    xyz = np.frombuffer(body, "<f4", 3 * n, 4).reshape(n, 3)
-    labels = np.frombuffer(body, "<i4", n, 4 + 12 * n)
-    colours = np.frombuffer(body, "u1", 3 * n, 4 + 16 * n)
-    document = json.loads(body[4 + 19 * n :])
-    own = perceive(str(EXAMPLES / "tower.pcd"))
-    for key in own.keys() - {"seconds", "source"}:
-        assert document[key] == own[key], key
-    assert document["points"] == {"shown": n, "of": n}
-    assert len(np.unique(colours)) > 10
-    for one in own["objects"]:
-        mine = xyz[labels == one["id"]]
-        assert len(mine) == one["n_points"]
-        np.testing.assert_allclose(mine.mean(axis=0), one["centroid"], atol=1e-5)
-    numbers = [i for edge in own["contact_edges"] for name, i in edge if name == "table"]
-    assert numbers
-    assert max(numbers) < len(document["table_contact_points"])
-
-
 def test_the_examples_are_what_their_script_makes(tmp_path: Path):
     pytest.importorskip("mujoco")
     from importlib.util import module_from_spec, spec_from_file_location
@@ -408,8 +369,6 @@ def test_the_examples_are_what_their_script_makes(tmp_path: Path):
     script = module_from_spec(found)
     found.loader.exec_module(script)
     script.make_examples(tmp_path)
-    from lifelore.perception.clouds.cloud_file import read_cloud
-
     assert {path.name for path in EXAMPLES.glob("*.pcd")} == {path.name for path in tmp_path.iterdir()}
     for path in tmp_path.iterdir():
         made, shipped = read_cloud(path), read_cloud(EXAMPLES / path.name)

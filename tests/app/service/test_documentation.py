@@ -10,14 +10,8 @@ from lifelore.app.service.settings import GROUPS, ServiceSettings
 from lifelore.app.service.tokens import add_token
 from lifelore.core.errors import InputError
 
-OWN = (
-    "/healthz",
-    "/v1/memory",
-    "/v1/memory/merge",
-    "/v1/memory/robots",
-    "/v1/perceive/cloud",
-    "/v1/perceive/depth",
-)
+OWN = ("/healthz", *(f"/v1/{path}" for path in ("memory", "memory/merge", "memory/robots", "perceive/cloud",
+                                              "perceive/depth")))  # fmt: skip
 GROUP_OF = {
     "/v1/studies": "personalise", "/v1/adaptations/{name}": "personalise", "/v1/evaluate": "personalise",
     "/v1/perceive/cloud": "perceive", "/v1/memory": "memory", "/v1/lives": "pages",

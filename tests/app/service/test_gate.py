@@ -31,27 +31,25 @@ def bearer(token):
 
 
 def test_errors_of_every_kind_have_one_shape(shared, study):
-    client = shared
-    put = client.put("/v1/studies/s", json=study | {"control": 2.0})
+    put = shared.put("/v1/studies/s", json=study | {"control": 2.0})
     assert error_of(put, 422, "input") == "control must lie between 0 and 1, 1 left out, got 2.0"
-    assert "no study 'nobody' in the memory" in error_of(client.get("/v1/studies/nobody"), 404, "not found")
-    error_of(client.get("/nowhere"), 404, "not found")
-    error_of(client.patch("/v1/studies"), 405, "method")
-    error_of(client.post("/v1/studies/s/outcomes", content=b"{", headers=JSON), 422, "input")
-    message = error_of(client.post("/v1/studies/s/outcomes", json={"decision": "x"}), 422, "input")
+    assert "no study 'nobody' in the memory" in error_of(shared.get("/v1/studies/nobody"), 404, "not found")
+    error_of(shared.get("/nowhere"), 404, "not found")
+    error_of(shared.patch("/v1/studies"), 405, "method")
+    error_of(shared.post("/v1/studies/s/outcomes", content=b"{", headers=JSON), 422, "input")
+    message = error_of(shared.post("/v1/studies/s/outcomes", json={"decision": "x"}), 422, "input")
     assert message == "outcome: field required"
-    error_of(client.post("/v1/studies/s/decisions", json={"user": "ada", "usr": 1}), 422, "input")
+    error_of(shared.post("/v1/studies/s/decisions", json={"user": "ada", "usr": 1}), 422, "input")
 
 
 def test_a_defect_shows_no_traceback_and_logs_it(shared, monkeypatch, caplog):
-    client = shared
 
     def broken(memory):
         raise ZeroDivisionError("secret of the inside")
 
     monkeypatch.setattr("lifelore.app.service.study_routes.study_states", broken)
     with caplog.at_level(logging.INFO, "lifelore.service"):
-        answer = client.get("/v1/studies", headers={"X-Request-ID": "mine-7"})
+        answer = shared.get("/v1/studies", headers={"X-Request-ID": "mine-7"})
     message = error_of(answer, 500, "defect")
     assert "secret" not in message
     (record,) = [one for one in caplog.records if one.name == "lifelore.service"]
@@ -137,20 +135,14 @@ def test_wrong_tokens_are_limited_and_right_ones_are_not(serve, tmp_path):
 
 
 def test_without_tokens_only_this_machine_is_answered(shared):
-    client = shared
     for host in ("evil.example", "evil.example:8321", "127.0.0.1.evil.example", "localhost.evil.example", ""):
-        error_of(client.get("/healthz", headers={"Host": host}), 403, "scope")
+        error_of(shared.get("/healthz", headers={"Host": host}), 403, "scope")
     for host in ("127.0.0.1", "localhost:8321", "[::1]:8321", "127.0.0.2"):
-        assert client.get("/healthz", headers={"Host": host}).status_code == 200, host
-        assert client.get("/healthz", headers={"Host": host, "Origin": f"http://{host}"}).status_code == 200, host
-    for origin in (
-        "https://evil.example",
-        "null",
-        "http://127.0.0.1:9999",
-        "http://127.0.0.1",
-        "http://localhost:8321",
-    ):
-        refused = client.get("/healthz", headers={"Host": "127.0.0.1:8321", "Origin": origin})
+        assert shared.get("/healthz", headers={"Host": host}).status_code == 200, host
+        assert shared.get("/healthz", headers={"Host": host, "Origin": f"http://{host}"}).status_code == 200, host
+    own = [f"http://{host}" for host in ("127.0.0.1:9999", "127.0.0.1", "localhost:8321")]
+    for origin in ("https://evil.example", "null", *own):
+        refused = shared.get("/healthz", headers={"Host": "127.0.0.1:8321", "Origin": origin})
         error_of(refused, 403, "scope")
 
 

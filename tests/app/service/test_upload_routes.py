@@ -50,15 +50,14 @@ def ask(client, content, **options):
 
 
 def test_a_cloud_becomes_a_scene_with_pddl(shared, cloud, tmp_path):
-    content = cloud
-    answer = ask(shared, content, format="npy")
+    answer = ask(shared, cloud, format="npy")
     assert answer.status_code == 200, answer.text
     document = answer.json()
-    (tmp_path / "cloud.npy").write_bytes(content)
+    (tmp_path / "cloud.npy").write_bytes(cloud)
     from lifelore.agent.perceive.perceive import PerceiveSettings
 
     own = perceive(str(tmp_path / "cloud.npy"), PerceiveSettings(up="z"))
-    masked = ask(shared, content, format="npy", with_masks=True).json()
+    masked = ask(shared, cloud, format="npy", with_masks=True).json()
     assert all(len(one["points"]) == one["n_points"] for one in masked["objects"])
     for key in own.keys() - {"seconds", "source"}:
         assert document[key] == own[key], key
@@ -69,37 +68,34 @@ def test_a_cloud_becomes_a_scene_with_pddl(shared, cloud, tmp_path):
 
 @pytest.mark.planning
 def test_a_goal_is_planned_for(shared, cloud):
-    client = shared
-    plan = ask(client, cloud, format="npy", goal="holding(o2)", plan=True).json()["plan"]
+    plan = ask(shared, cloud, format="npy", goal="holding(o2)", plan=True).json()["plan"]
     named = [(step["action"], step["objects"][0]["id"]) for step in plan["steps"]]
     assert (named[0], named[-1], len(named)) == (("pick-up", 3), ("pick-up", 2), 3)
     assert plan["reason"] is None
-    refused = ask(client, cloud, format="npy", plan=True)
+    refused = ask(shared, cloud, format="npy", plan=True)
     assert refused.status_code == 422
     assert "plan (--plan) needs a goal" in refused.text
 
 
 def test_up_is_a_direction(shared, cloud):
-    client = shared
     stated = {
-        up: {(r["relation"], r["a"], r["b"]) for r in ask(client, cloud, format="npy", up=up).json()["relations"]}
+        up: {(r["relation"], r["a"], r["b"]) for r in ask(shared, cloud, format="npy", up=up).json()["relations"]}
         for up in ("z", "0,0,2")
     }
     assert stated["z"] == stated["0,0,2"] >= {("on", 3, 2)}
     for wrong in ("0,0", "a,b,c", "sideways"):
-        refused = ask(client, cloud, format="npy", up=wrong)
+        refused = ask(shared, cloud, format="npy", up=wrong)
         assert refused.status_code == 422
         assert "up must be" in refused.text
 
 
 def test_a_region_is_cut_out(shared, cloud):
-    client = shared
-    (only,) = ask(client, cloud, format="npy", roi="-1,1,-1,1,-1,0.09").json()["objects"]
+    (only,) = ask(shared, cloud, format="npy", roi="-1,1,-1,1,-1,0.09").json()["objects"]
     assert only["id"] == 2
-    refused = ask(client, cloud, format="npy", roi="1,2")
+    refused = ask(shared, cloud, format="npy", roi="1,2")
     assert refused.status_code == 422
     assert "roi must be six numbers" in refused.text
-    assert "max_range must be a positive number" in ask(client, cloud, format="npy", max_range=-1).text
+    assert "max_range must be a positive number" in ask(shared, cloud, format="npy", max_range=-1).text
 
 
 @pytest.fixture(scope="module")
@@ -120,8 +116,7 @@ def encoded(image):
 
 
 def test_a_depth_image_becomes_a_scene(shared, depth):
-    client = shared
-    answer = client.post("/v1/perceive/depth", json=depth)
+    answer = shared.post("/v1/perceive/depth", json=depth)
     assert answer.status_code == 200, answer.text
     assert len(answer.json()["objects"]) == 1
     for wrong in (
@@ -130,28 +125,27 @@ def test_a_depth_image_becomes_a_scene(shared, depth):
         {"intrinsics": "no camera"},
         {"intrinsics": "/etc/passwd"},
     ):
-        refused = client.post("/v1/perceive/depth", json=depth | wrong)
+        refused = shared.post("/v1/perceive/depth", json=depth | wrong)
         assert refused.status_code == 422, wrong
         assert "/tmp" not in refused.text
 
 
 def test_a_depth_image_comes_with_the_file_of_its_camera_and_masks(shared, depth):
-    client = shared
     camera = "image_width: 160\nimage_height: 120\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
     camera += "  data: [130.0, 0, 79.5, 0, 130.0, 59.5, 0, 0, 1]\n"
     masks = np.zeros((120, 160), np.uint8)
     masks[40:80, 60:80], masks[40:80, 80:100] = 1, 2  # a segmenter that cuts the block in two
     asked = depth | {"intrinsics": camera, "masks": encoded(masks)}
-    document = client.post("/v1/perceive/depth", json=asked).json()
+    document = shared.post("/v1/perceive/depth", json=asked).json()
     assert [one["id"] for one in document["objects"]] == [2, 3]
     assert not any("mask" in one for one in document["objects"])
-    masked = client.post("/v1/perceive/depth", json=asked | {"with_masks": True}).json()
+    masked = shared.post("/v1/perceive/depth", json=asked | {"with_masks": True}).json()
     # Column 60 of 120 rows begins at pixel 7200; 40 rows of each of 20 columns are the first half.
     assert masked["objects"][0]["mask"] == {"size": [120, 160], "counts": [7240, *[40, 80] * 19, 40, 9640]}
     # The block lies 0.9 m in front of the camera, to the right of its axis or to the left.
     assert [np.sign(one["centroid_camera"][0]) for one in document["objects"]] == [-1, 1]
     assert all(one["centroid_camera"][2] == pytest.approx(0.9, abs=0.01) for one in document["objects"])
-    body = client.post("/v1/perceive/depth/points", json=asked).content
+    body = shared.post("/v1/perceive/depth/points", json=asked).content
     (n,) = struct.unpack("<I", body[:4])
     labels = np.frombuffer(body, "<i4", n, 4 + 12 * n)
     assert {1, 2, 3} <= set(labels.tolist())
@@ -162,21 +156,20 @@ def test_a_depth_image_comes_with_the_file_of_its_camera_and_masks(shared, depth
 
 def test_damaged_clouds_are_refused_in_one_line(shared, cloud, tmp_path):
     """Bytes changed, cut and made up at random, in every format: 4xx in the library's words, no path, no crash."""
-    client, draw = shared, random.Random(7)
-    content = cloud
+    draw = random.Random(7)
     for number in range(40):
-        damaged = bytearray(content[:128] if number % 2 else content)
+        damaged = bytearray(cloud[:128] if number % 2 else cloud)
         for _ in range(draw.randrange(1, 20)):
             damaged[draw.randrange(min(len(damaged), 200))] = draw.randrange(256)
         answer = ask(
-            client,
+            shared,
             bytes(damaged[: draw.randrange(len(damaged))]),
             format=draw.choice(["npy", "npz", "pcd", "ply"]),
         )
         assert answer.status_code in (200, 422), answer.text
         assert str(tmp_path.parents[2]) not in answer.text
         assert "/tmp" not in answer.text
-    assert ask(client, content, format="npy").status_code == 200
+    assert ask(shared, cloud, format="npy").status_code == 200
 
 
 def test_no_parameter_names_a_file(shared, cloud):

@@ -49,18 +49,16 @@ def test_the_thesis_range_and_defaults():
 
 
 @pytest.mark.parametrize(
-    ("arguments", "words"),
+    ("key", "values", "words"),
     [
-        ({"size": 3}, "size of a noise maze"),
-        ({"size": 10**6}, "size of a noise maze"),
-        ({"density": 1.0}, "density must lie in"),
-        ({"density": -0.1}, "density must lie in"),
-        ({"density": float("nan")}, "density must lie in"),
-        ({"density": 0.5, "obstacles": 3}, "not both"),
-        ({"obstacles": -1}, "obstacles must lie in"),
-        ({"obstacles": 440}, "obstacles must lie in"),
+        ("size", (3, 10**6), "size of a noise maze"),
+        ("density", (1.0, -0.1, float("nan")), "density must lie in"),
+        ("obstacles", (-1, 440), "obstacles must lie in"),
     ],
 )
-def test_each_broken_rule_is_one_clear_line(arguments, words):
-    with pytest.raises(InputError, match=words):
-        noise_maze(np.random.default_rng(0), **arguments)
+def test_each_broken_rule_is_one_clear_line(key, values, words):
+    for value in values:
+        with pytest.raises(InputError, match=words):
+            noise_maze(np.random.default_rng(0), **{key: value})
+    with pytest.raises(InputError, match="not both"):
+        noise_maze(np.random.default_rng(0), density=0.5, obstacles=3)
