@@ -42,3 +42,17 @@ def test_a_block_that_overhangs_another_is_an_object_of_its_own():
     labels = convex_objects(points, CAMERA, 6e-4, np.concatenate([points, table])).labels
     n = len(upper)
     assert np.bincount(labels[-n:]).argmax() != np.bincount(labels[:-n]).argmax()
+
+
+def test_a_flush_block_on_a_longer_one_is_an_object_of_its_own():
+    # Their fronts are one plane. A little free space beside the upper one is enough, as it ends higher.
+    upper = [face((-0.04, 0, 0.06), (0.1, 0, 0), (0, 0, 0.04)), face((-0.04, 0, 0.1), (0.1, 0, 0), (0, 0.08, 0))]
+    points = np.concatenate([block(-0.06, 0.0, 0.14, 0.1, 0.06), *upper])
+    points += np.random.default_rng(0).normal(0, 0.001, points.shape)
+    table = face((-0.4, -0.4, 0), (0.8, 0, 0), (0, 1.0, 0))
+    labels = convex_objects(points, CAMERA, 6e-4, np.concatenate([points, table])).labels
+    n = len(upper[0]) + len(upper[1])
+    lower = np.bincount(labels[:-n]).argmax()
+    assert np.bincount(labels[-n:]).argmax() != lower
+    assert (labels[:-n] == lower).mean() > 0.95
+    assert (labels[-n:] == lower).mean() < 0.1

@@ -111,8 +111,10 @@ def test_weak_regions_join_the_neighbour_of_the_longest_border():
 
 
 def test_confidence_by_hand():
-    # Two regions of two patches each; evidence -2 between them, and one of the two borders inside is a crease.
-    pair = patches(np.zeros((4, 3)), [[0, 0, 1]] * 4, CHAIN, counts=[100, 200, 300, 400])
+    # Two regions of two patches each; a border of length 6 and evidence -2 between them.
+    pair = patches(np.zeros((4, 3)), [[0, 0, 1]] * 4, CHAIN, [4, 6, 5], [100, 200, 300, 400])
     found = cut_confidence(pair, np.array([5.0, -2.0, -1.0]), np.array([0, 0, 1, 1]))
-    odds = [-20 + 0.75 * 2 + 3.15 * np.log(300), -20 + 0.75 * 2 - 1.7 + 3.15 * np.log(700)]
+    odds = [-15.7 + 0.38 * 2 - 0.07 * 6 / np.sqrt(n) + 2.9 * np.log(n) for n in (300, 700)]
     assert np.allclose(found, 1 / (1 + np.exp(-np.array(odds))))
+    # One object cut in two is surer than either half.
+    assert cut_confidence(pair, np.array([5.0, -2.0, -1.0]), np.zeros(4, int))[0] > found.max()

@@ -31,7 +31,7 @@ BEHIND = 0.04
 """Metres by which a point must be farther than the bottom edge to be behind it."""
 EDGE_SEEN = 0.7
 """Least share of the bottom edge below which something farther is seen."""
-STILL = 0.02
+STILL = 0.1
 """Probability that a raised object rests on the table after all."""
 
 

@@ -33,7 +33,7 @@ PATCH = 0.020
 FRAGMENT = 150
 """Voxels of that size, 37 cm² of surface; a smaller region joins the neighbour of the longest border. Less leaves
 slivers at creases, more swallows small objects that touch others."""
-LEAST_SURE = 0.05
+LEAST_SURE = 0.4
 """Probability of a true object (`cut_confidence`); a less sure region joins the neighbour of the longest border.
 More removes more false objects, and swallows small true ones."""
 _STARTS = (0.0, 1 / 3, 2 / 3)

@@ -1,7 +1,7 @@
 """How surely an object was cut from its neighbours: the probability that it finds a true object.
 
-A region is doubtful if it is small, if the evidence for a cut at its weakest border is small, or if it has creases
-inside. Logistic regression on 60 simulated scenes gives the weights.
+A region is doubtful if it is small, if the evidence for a cut at its weakest border is small, or if much of its
+outline borders on other regions. Logistic regression on 184 simulated scenes of 24 kinds gives the weights.
 """
 
 from collections.abc import Mapping
@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from lifelore.core.labelled_cloud import UNLABELLED
 from lifelore.perception.segmentation.supervoxels import Supervoxels
 
-_BASE, _OF_BORDER, _OF_CREASES, _OF_SIZE = -20.0, -0.75, -1.7, 3.15
+_BASE, _OF_WEAKEST, _OF_BORDERS, _OF_SIZE = -15.7, -0.38, -0.07, 2.9
 """Log odds: constant, and weights of the mean evidence of one object at the weakest border (the least
-evidence without a neighbour), of the share of creases inside, and of the logarithm of the voxels. Fitted as
-`cut_confidence` says; others change only the probabilities, not the objects."""
+evidence without a neighbour), of the length of all borders in square roots of the voxels, and of the logarithm of
+the voxels."""
 _NO_BORDER = -5.0
 
 
@@ -64,16 +64,15 @@ def cut_confidence(
     """
     n = int(regions.max()) + 1
     ends = np.sort(regions[patches.pairs], axis=1).reshape(-1, 2)
-    inside = ends[:, 0] == ends[:, 1]
-    length = patches.borders.astype(float)
-    own = np.bincount(ends[inside, 0], length[inside], minlength=n)
-    creases = np.bincount(ends[inside, 0], (length * (evidence < 0))[inside], minlength=n) / np.maximum(own, 1.0)
-    weakest = np.full(n, _NO_BORDER)
-    borders, border = np.unique(ends[~inside], axis=0, return_inverse=True)
-    border = border.reshape(-1)
-    mean = np.bincount(border, (length * evidence)[~inside]) / np.bincount(border, length[~inside])
+    outside = ends[:, 0] != ends[:, 1]
+    borders, border = np.unique(ends[outside], axis=0, return_inverse=True)
+    border, length = border.reshape(-1), patches.borders[outside].astype(float)
+    lengths = np.bincount(border, length)
+    mean = np.bincount(border, length * evidence[outside]) / lengths
+    weakest, around = np.full(n, _NO_BORDER), np.zeros(n)
     for side in borders.reshape(-1, 2).T:
         np.maximum.at(weakest, side, mean)
-    voxels = np.bincount(regions, patches.counts, minlength=n)
-    odds = _BASE + _OF_BORDER * weakest + _OF_CREASES * creases + _OF_SIZE * np.log(np.maximum(voxels, 1.0))
+        np.add.at(around, side, lengths)
+    voxels = np.maximum(np.bincount(regions, patches.counts, minlength=n), 1.0)
+    odds = _BASE + _OF_WEAKEST * weakest + _OF_BORDERS * around / np.sqrt(voxels) + _OF_SIZE * np.log(voxels)
     return 1.0 / (1.0 + np.exp(-np.clip(odds, -30.0, 30.0)))

@@ -16,6 +16,10 @@ _STRONG = 3.5
 _FREE = 0.05
 """Share of free places between two regions, beyond that within either, from which they stay apart. More joins what
 touches at corners, less splits what is hollow."""
+_FREE_UNEVEN = 0.01
+"""The same where one region ends higher than the other, as inside and outside of a hollow object do not."""
+_UNEVEN = 0.015
+"""Metres between the heights of the highest patches of two regions that end at different heights."""
 _SAMPLE = 16
 """Patches of a region from which lines are drawn."""
 
@@ -28,7 +32,8 @@ def merged(
     The evidence between two regions is the mean over their border, weighed by its length. The pair with the
     greatest mean is merged until no mean is above 0. So a few pairs of convex patches do not merge two objects
     that meet in a long crease, and a few concave pairs do not split a box along an edge. Two large regions stay
-    apart where the evidence is weak and the camera sees through the space between them (`free_share`).
+    apart where the evidence is weak and the camera sees through the space between them (`free_share`); less
+    of it is enough where they end at different heights.
 
     Parameters
     ----------
@@ -68,11 +73,8 @@ def _owners(patches, evidence, least, voxel, view):
         if _regions(ends, e) != (a, b) or key != -total[e] / border[e]:
             continue  # the border has grown since
         if -key < _STRONG and min(voxels[a], voxels[b]) >= least:
-            of_a, of_b = _some(owner, a), _some(owner, b)
-            within = max(
-                free_share(of_a, of_a, patches, voxel, view), free_share(of_b, of_b, patches, voxel, view)
-            )
-            if free_share(of_a, of_b, patches, voxel, view) > within + _FREE:
+            of_a, of_b = np.flatnonzero(owner == a), np.flatnonzero(owner == b)
+            if _free_between(of_a, of_b, patches, voxel, view):
                 continue
         owner[owner == b] = a
         voxels[a] += voxels[b]
@@ -102,9 +104,17 @@ def _owners(patches, evidence, least, voxel, view):
 
 
 @inlined
-def _some(owner, region):
-    """At most `_SAMPLE` patches of a region, evenly by their numbers, which ascend with their places."""
-    own = np.flatnonzero(owner == region)
+def _free_between(first, second, patches, voxel, view):
+    """Whether the camera sees through more of the space between two regions than within either."""
+    uneven = abs(patches.middles[first, 2].max() - patches.middles[second, 2].max()) > _UNEVEN
+    first, second = _some(first), _some(second)
+    within = max(free_share(first, first, patches, voxel, view), free_share(second, second, patches, voxel, view))
+    return free_share(first, second, patches, voxel, view) > within + (_FREE_UNEVEN if uneven else _FREE)
+
+
+@inlined
+def _some(own):
+    """At most `_SAMPLE` of the patches of a region, evenly by their numbers, which ascend with their places."""
     return own[:: (len(own) + _SAMPLE - 1) // _SAMPLE]
 
 
