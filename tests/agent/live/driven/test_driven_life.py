@@ -61,6 +61,14 @@ def test_a_trip_is_driven_at_once_and_about_as_long_as_the_shortest_path(office,
         assert not any("80" in key for key in drive)
 
 
+def test_drives_that_are_simulated_on_the_map_teach_no_times(office, tmp_path):
+    """They would count, at the simulated speed, beside what logs of the robot teach."""
+    life = life_in(office, tmp_path, goals=jobs(*points(1, 2)))
+    assert life.report["tasks"][1]["agents"]["lore"]["reached"]
+    assert life.building.known.any()
+    assert not life.building.travel.driven.any()
+
+
 def test_a_list_starts_each_job_where_the_last_one_ended(office, tmp_path):
     ends = points(1, 4)
     first = life_in(office, tmp_path, goals=jobs(*ends[1:]), start=ends[0]).report["tasks"]
