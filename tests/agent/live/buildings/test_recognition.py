@@ -160,7 +160,7 @@ def test_rows_of_shelves_are_recognised_by_the_walls_around_them(tmp_path):
 
 
 def test_a_pose_does_not_lead_by_leaving_changed_walls_out():
-    """The ends of the rows were not seen: one or two racks further, those that have gone lie beyond the other map."""
+    """The ends of the rows were not seen: a few racks further, those that have gone lie beyond the other map."""
 
     def rows(gone: tuple[int, ...]) -> OccupancyMap:
         state = np.full((200, 500), UNKNOWN, np.uint8)
