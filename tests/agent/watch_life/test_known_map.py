@@ -101,7 +101,7 @@ def test_named_places_stand_in_their_cells(tmp_path, yaw):
         for name, (x, y) in ends.items()
     )
     memory = MemorySettings(str(tmp_path / "m.db"))
-    lived = live(LifeSettings(settings, goals=jobs, memory=memory, jobs=1, busy=True))
+    lived = live(LifeSettings(settings, goals=jobs, memory=memory, jobs=1))
     with open_memory(memory.location) as opened:
         found = known(opened, lived.world.fingerprint)
     rows = found["shape"][0]

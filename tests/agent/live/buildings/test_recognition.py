@@ -8,6 +8,7 @@ import pytest
 
 from lifelore.agent.building_record import Building, map_digest, remembered_buildings, remembered_map
 from lifelore.agent.live.buildings.building_memory import buildings_in, forget_building
+from lifelore.agent.live.buildings.recognition import fitting_building
 from lifelore.agent.live.life import Life, live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
 from lifelore.core.errors import InputError, NotFoundError
@@ -156,6 +157,21 @@ def test_rows_of_shelves_are_recognised_by_the_walls_around_them(tmp_path):
     part = replace(shelves, state=state[20:180, 60:260].copy())
     refused = life_on(tmp_path, turned(part, 17.0), "part").report["building"]
     assert refused["reason"] == "two poses fit home equally"
+
+
+def test_a_pose_does_not_lead_by_leaving_changed_walls_out():
+    """The ends of the rows were not seen: a few racks further, those that have gone lie beyond the other map."""
+
+    def rows(gone: tuple[int, ...]) -> OccupancyMap:
+        state = np.full((200, 500), UNKNOWN, np.uint8)
+        state[10:190, 12:476] = FREE
+        for rack in set(range(23)) - set(gone):
+            state[30:170, 20 * rack + 20 : 20 * rack + 28] = OCCUPIED
+        return OccupancyMap(state, 0.1)
+
+    old = rows(())
+    found, reason = fitting_building(turned(rows((20, 22)), 17.0), {Building.new(old, "home"): old})
+    assert (found, reason) == (None, "two poses fit home equally")
 
 
 def test_a_name_decides(home):

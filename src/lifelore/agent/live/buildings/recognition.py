@@ -36,7 +36,8 @@ LEAST_MARGIN = 0.15
 """Least lead over the best clearly different pose, and over every other building."""
 TIMES_MISSED, MORE_MISSED = 4.0, 15.0
 """A pose also leads if the other one misses so many times its walls, and so many metres more: rows of shelves fit
-one aisle further, too, but for the outer walls. Furniture that moved since counts against both poses."""
+one aisle further, too, but for the outer walls. Furniture that moved since counts against both poses, if no less
+ground is compared at the first."""
 SAME_FRAME = 0.05, 0.002
 """Metres and radians: a pose this near to the identity is the identity."""
 
@@ -247,7 +248,8 @@ def fitting_building(
 def leads(best: Fit, second: Fit) -> bool:
     """Whether a pose fits clearly better than another one."""
     more_missed = second.missed > max(TIMES_MISSED * best.missed, best.missed + MORE_MISSED)
-    return best.match - second.match >= LEAST_MARGIN or more_missed
+    # A pose under which less is compared misses less: the changed part may lie beyond the other map.
+    return best.match - second.match >= LEAST_MARGIN or (more_missed and best.overlap >= second.overlap)
 
 
 def _near_identity(pose: Pose) -> bool:
