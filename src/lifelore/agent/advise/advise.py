@@ -165,7 +165,12 @@ def advise(lines: Lines, settings: AdviseSettings, name: str = "input") -> Itera
 
 
 def world_of(settings: AdviseSettings) -> GridWorld:
-    """The world of a map, or of a world's name and seed.
+    """The world of a map, or of a world's name and seed."""
+    return world_from_settings(world_settings(settings))
+
+
+def world_settings(settings: AdviseSettings) -> WorldSettings:
+    """The settings of the world of a map, or of a world's name and seed.
 
     Raises
     ------
@@ -173,15 +178,13 @@ def world_of(settings: AdviseSettings) -> GridWorld:
         The seed is no number, or no world has this name.
     """
     if settings.world.endswith((".yaml", ".yml")) or os.sep in settings.world:
-        given = WorldSettings("building", settings.world, settings.cell, settings.robot_radius)
-        return world_from_settings(given)
+        return WorldSettings("building", settings.world, settings.cell, settings.robot_radius)
     domain, _, seed = settings.world.partition(":")
     if not seed.isdecimal() and ":" in settings.world:
         raise InputError(f"world must be a map's YAML, or NAME:SEED with a whole number, got '{settings.world}'")
     if domain not in domain_names():
         raise NotFoundError(f"world must be a map's YAML or one of {', '.join(domain_names())}, got '{domain}'")
-    named = WorldSettings(domain, None, settings.cell, settings.robot_radius, seed=int(seed or 0))
-    return world_from_settings(named)
+    return WorldSettings(domain, None, settings.cell, settings.robot_radius, seed=int(seed or 0))
 
 
 def _goals(settings: AdviseSettings, walks: list[Trajectory], world: GridWorld) -> list[int]:
