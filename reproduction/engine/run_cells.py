@@ -65,8 +65,6 @@ def run_on_workers(cells: Sequence[CellRun], jobs: int, scheduler: str | None = 
     """
     from joblib import Parallel, delayed
 
-    from reproduction.engine.run_cells import cluster_backend
-
     # joblib replaces a worker that has grown by 300 MB, loses nothing, and warns from a thread of its own.
     filterwarnings("ignore", message="A worker stopped while some jobs", category=UserWarning)
     one: Any = 1  # joblib's annotations forget whole numbers

@@ -160,6 +160,8 @@ def test_both_kinds_of_lives_are_accessible_and_fit(
     for index, panel in enumerate(("#of-map", "#of-types")):
         page.select_option("#which", index=index)
         expect(page.locator(panel)).to_be_visible()
+        hidden = "found => found.filter((one) => one.scrollWidth > one.clientWidth).map((one) => one.outerHTML)"
+        assert page.locator(".scroll:visible").evaluate_all(hidden) == []
         check_page(page, "life" if (size, panel) == (DESKTOP, "#of-types") else None, 1240)
 
 

@@ -1,6 +1,5 @@
 """Logs as they come: what is read, and the line that says what is wrong."""
 
-
 import numpy as np
 import pytest
 
