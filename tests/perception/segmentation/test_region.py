@@ -5,9 +5,10 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.perception.clouds.point_cloud import PointCloud
-from lifelore.perception.segmentation.object_segmentation import SegmentationSettings
-from lifelore.perception.segmentation.region import Region, inside
+from lifelore.perception.segmentation.object_segmentation import TABLE_BAND, SegmentationSettings, cut_cloud
+from lifelore.perception.segmentation.region import Region, empty_places, inside
 from lifelore.perception.segmentation.table_frame import segmented_scene
+from tests.perception.segmentation.test_parted_objects import block, face
 
 POINTS = np.array([[0.0, 0, 1], [0.5, 0, 1], [0, 0, 3], [np.nan, 0, 1]])
 
@@ -115,3 +116,20 @@ def test_furniture_beside_the_table_is_no_object():
     labels = segmented_scene(cloud).cloud.labels
     assert labels.max() == 2
     assert np.mean(labels[-len(chair) :] == 0) > 0.95
+
+
+def test_an_object_stands_where_the_table_is_not_seen_unless_the_camera_sees_through_its_plane_beside_it():
+    # A block beyond the end of the visible table. A floor 0.7 m below is seen past it, where no table can be.
+    table = face((-0.4, -0.4, 0), (0.5, 0, 0), (0, 0.8, 0))
+    thing = block(0.15, 0.0, 0.1, 0.1, 0.12)
+    points = np.concatenate([table, thing[thing[:, 2] > TABLE_BAND]])
+    camera = np.array([0.2, -0.6, 0.7])
+    floor = face((0.0, 0.3, -0.7), (0.8, 0, 0), (0, 0.9, 0))
+    places = empty_places(floor, np.full(len(floor), TABLE_BAND), camera)
+    assert np.allclose(places[0], [0.1, -0.15])  # half way between the camera and the floor's corner
+
+    def n_objects(empty):
+        return cut_cloud(points, None, SegmentationSettings(), camera, empty).labels.max() - 1
+
+    assert n_objects(np.empty((0, 2))) == 1
+    assert n_objects(places) == 0

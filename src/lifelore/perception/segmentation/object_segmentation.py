@@ -26,6 +26,14 @@ MIN_AREA = 6e-4
 """Square metres of surface below which a cluster or region is noise."""
 STANDING = 0.25
 """Least share of an object's points over the visible table. Of one at its far end, only the front is over it."""
+_FOOT = 0.03
+"""Metres above the table up to which points are the foot of an object that stands on it."""
+_FEW_LOW = 10
+"""Least number of sampled points of such a foot."""
+_BESIDE = 0.06
+"""Metres from a foot at which the table would be seen, or an empty place."""
+_HANGING = 0.2
+"""Least share of the foot's points beside empty places, of a thing that is not on the table, as a chair."""
 RISE = 1.5
 """Bands of noise (`range_noise`) above the table; an object of which less than that share is higher is noise."""
 
@@ -61,11 +69,14 @@ def cut_cloud(
     colours: NDArray[np.uint8] | None,
     settings: SegmentationSettings,
     camera: NDArray[np.float64] | None = None,
+    empty: NDArray[np.float64] | None = None,
 ) -> CutCloud:
     """Labels of a scene in its own frame: 1 the table, 2 … objects by size, 0 the rest; ``"convexity"`` is sure to
     a degree.
 
-    `camera` (3,), where known, tells ``"convexity"`` the outer side of each surface.
+    `camera` (3,), where known, tells ``"convexity"`` the outer side of each surface. `empty` (m, 2), where known,
+    are places of the table's plane that the camera sees through: an object beside the visible table is kept where
+    it reaches down to the plane and no such place is beside its feet.
 
     Raises
     ------
@@ -79,9 +90,13 @@ def cut_cloud(
     cut = _objects(standing, None if colours is None else colours[above], settings, camera, points)
     table = np.flatnonzero(labels == TABLE)
     few = slice(None, None, max(1, len(above) // _SAMPLE))
-    tests = [over_outline(standing[few, :2], points[table[:: max(1, len(table) // _SAMPLE)], :2])]
+    some, outline = standing[few], points[table[:: max(1, len(table) // _SAMPLE)], :2]
+    tests = [over_outline(some[:, :2], outline)]
+    if empty is not None:
+        beside = _stand(np.where(tests[0], UNLABELLED, cut.labels[few]), some, empty)
+        tests[0] |= over_outline(some[:, :2], np.concatenate([outline, some[beside, :2]]))
     if camera is not None and len(table):
-        tests.append(standing[few, 2] > RISE * noise(standing[few], camera))
+        tests.append(some[:, 2] > RISE * noise(some, camera))
     cut = _standing(cut, cut.labels[few], tests)
     labels[above] = cut.labels
     return replace(cut, labels=labels)
@@ -108,6 +123,24 @@ def _objects(
     from lifelore.perception.segmentation.convexity_segmentation import convex_objects
 
     return convex_objects(points, camera, MIN_AREA, seen)
+
+
+def _stand(
+    labels: NDArray[np.int64], points: NDArray[np.float64], empty: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """(n,) bool: points (n, 3) of objects that reach down to the table, with no `empty` places (m, 2) beside their
+    feet. Such objects stand on the table, though it may not be seen around them."""
+    from scipy.spatial import KDTree
+
+    low = np.flatnonzero((points[:, 2] <= _FOOT) & (labels > TABLE))
+    n = int(labels.max(initial=TABLE)) + 1
+    feet = points[low, :2]
+    if len(feet):
+        near = np.abs(empty - (feet.min(axis=0) + feet.max(axis=0)) / 2) <= np.ptp(feet, axis=0) / 2 + _BESIDE
+        empty = empty[near.all(axis=1)]
+    bare = KDTree(empty).query(feet, distance_upper_bound=_BESIDE)[0] < np.inf
+    n_feet, n_bare = (np.bincount(labels[rows], minlength=n) for rows in (low, low[bare]))
+    return ((n_feet >= _FEW_LOW) & (n_bare < _HANGING * n_feet))[labels]
 
 
 def _standing(cut: CutCloud, labels: NDArray[np.int64], shares: Iterable[NDArray[np.bool_]]) -> CutCloud:

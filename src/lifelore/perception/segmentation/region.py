@@ -130,6 +130,16 @@ def reaching_out(
     return beyond
 
 
+def empty_places(
+    points: NDArray[np.float64], bands: NDArray[np.float64], camera: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """(m, 2) places where the camera sees through the plane z = 0: something below it was measured there."""
+    below = points[points[:, 2] < -2 * bands]
+    if camera[2] <= 0:
+        return below[:, :2]
+    return camera[:2] + (below[:, :2] - camera[:2]) * (camera[2] / (camera[2] - below[:, 2:]))
+
+
 def _covered(
     which: NDArray[np.bool_], points: NDArray[np.float64], patch: Patch, margin: float = 0.0
 ) -> NDArray[np.bool_]:

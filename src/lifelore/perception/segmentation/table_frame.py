@@ -21,7 +21,7 @@ from lifelore.perception.segmentation.object_segmentation import TABLE_BAND, Seg
 from lifelore.perception.segmentation.outline import over_outline
 from lifelore.perception.segmentation.plane import NEAR, Plane, fitted_plane
 from lifelore.perception.segmentation.range_noise import band
-from lifelore.perception.segmentation.region import Region, inside, over_table, reaching_out
+from lifelore.perception.segmentation.region import Region, empty_places, inside, over_table, reaching_out
 from lifelore.perception.segmentation.table_evidence import REACH
 from lifelore.perception.segmentation.table_search import Search, Table, find_table, no_table
 
@@ -248,7 +248,8 @@ def _cut(
         # The band of a far table is wider than that of the segmentation: its points are laid onto the plane.
         upright_points[on_it[chosen], 2] = 0.0
     colours = None if cloud.colours is None else cloud.colours.take(chosen, axis=0)
-    cut = cut_cloud(upright_points, colours, settings, camera)
+    empty = None if table is None or camera is None else empty_places(scene_points, bands, camera)
+    cut = cut_cloud(upright_points, colours, settings, camera, empty)
     labels[chosen] = cut.labels
     return replace(cut, labels=labels if table is None else with_feet(labels, scene_points, bands))
 
