@@ -86,11 +86,11 @@ class MeanPairs:
         mean, doubt = means_of_types(model, prior)
         alike = prior @ mean + ALIKE * (mean - prior @ mean)
         # Policy first: a signal reads the row of a policy.
-        self._mean = np.concatenate([mean, alike, broad.mean]).T.copy()
-        self._variance = np.concatenate([known.variance, known.variance, broad.variance]).T.copy()
-        self._doubt = np.concatenate([doubt, doubt, 1 / broad.count]).T.copy()
-        self.n_kinds, self._known = 2 * len(mean) + 1, slice(len(mean))
-        self._log_prior = log_of(np.concatenate([prior, prior, [1.0]]))
+        self._mean = np.concatenate([mean, alike, broad.mean]).T
+        self._variance = np.concatenate([known.variance, known.variance, broad.variance]).T
+        self._doubt = np.concatenate([doubt, doubt, 1 / broad.count]).T
+        self._log_prior = log_of(np.concatenate([prior, prior / 2, [0.5]]))
+        self.n_kinds = len(self._log_prior)
 
     def misfit(self, moments: Array, policies: Numbers) -> Array:
         """−2 log P of mean outcomes of `policies` (...), (..., n_kinds); 0 where nothing is shown."""
@@ -100,11 +100,11 @@ class MeanPairs:
         return np.where(count > 0, np.minimum(found, LARGEST), 0.0)
 
     def statistic(self, misfit: Array, freedom: Array) -> Array:
-        """Log odds of a new type without its prior, from sums (..., n_kinds)."""
-        terms = self._log_prior - misfit / 2
-        known, new = terms[..., self._known], terms[..., self._known.stop :]
-        found = np.logaddexp.reduce(new, axis=-1) - np.log(2) - np.logaddexp.reduce(known, axis=-1)
-        return np.where(freedom > 0, found, 0.0)
+        """Log odds of a new type without their prior, from sums (..., n_kinds)."""
+        terms, n_types = self._log_prior - misfit / 2, self.n_kinds // 2
+        return np.logaddexp.reduce(terms[..., n_types:], axis=-1) - np.logaddexp.reduce(
+            terms[..., :n_types], axis=-1
+        )
 
 
 class CountedPairs:
