@@ -31,6 +31,9 @@ LARGEST = 1e6
 """Largest misfit of a pair, so that impossible signals leave the sums finite."""
 ALIKE = 0.9
 """Distance of a new type from the mean of all types, as a share of that of the known type which it is like."""
+BREADTH = 1.0
+"""Least variance of a broad type's means, in variances of an outcome: few types, or types that are alike, do not
+tell how far a new type may lie from them."""
 
 
 class Misfit:
@@ -88,7 +91,7 @@ class MeanPairs:
         # Policy first: a signal reads the row of a policy.
         self._mean = np.concatenate([mean, alike, broad.mean]).T
         self._variance = np.concatenate([known.variance, known.variance, broad.variance]).T
-        self._doubt = np.concatenate([doubt, doubt, 1 / broad.count]).T
+        self._doubt = np.concatenate([doubt, doubt, np.maximum(1 / broad.count, BREADTH)]).T
         self._log_prior = log_of(np.concatenate([prior, prior / 2, [0.5]]))
         self.n_kinds = len(self._log_prior)
 
@@ -164,8 +167,9 @@ def means_of_types(model: GaussianOutcomes, prior: Array) -> tuple[Array, Array]
     """
     moments, centre = model.moments, prior @ model.mean
     error, spread = moments.variance / moments.count, model.spread.least.values[0]
-    scatter = (prior @ (model.mean - centre) ** 2).mean() / max(1 - prior @ prior, 1e-12)
-    share = 1 - np.minimum(error / max(scatter, 1e-300), 1.0) if len(prior) > 1 else np.ones_like(error)
+    between = (prior @ (model.mean - centre) ** 2).mean() / max(1 - prior @ prior, 1e-12) - error.mean()
+    # Types that differ no more than by the errors, or a single type, do not tell how far they differ.
+    share = between / (between + error) if len(prior) > 1 and between > error.mean() else np.ones_like(error)
     return centre + share * (model.mean - centre), share / moments.count + spread
 
 
