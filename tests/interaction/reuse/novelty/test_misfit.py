@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.stats import multinomial, multivariate_normal
+from scipy.stats import multinomial, multivariate_normal, norm
 
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -30,6 +30,16 @@ def test_outcomes_of_exact_types_are_a_likelihood_ratio():
     expected = np.log((np.mean(alike) + broad) / 2) - np.log(np.mean(known))
     assert misfit.statistic(0) == pytest.approx(expected)
     assert (misfit.freedom[0], misfit.n_signals[0]) == (2, 3)
+
+
+def test_a_new_type_beside_a_single_known_type_pays_less():
+    """Two deviations less, or as broad as an outcome: a low outcome says more than a high one."""
+    low, high = misfit_of(EXACT.take([0])), misfit_of(EXACT.take([0]))
+    low.observe(0, 0, 7.0)
+    high.observe(0, 0, 13.0)
+    broad = norm.pdf(7, 10, 8**0.5)
+    assert low.statistic(0) == pytest.approx(np.log((norm.pdf(7, 6, 2) + broad) / 2 / norm.pdf(7, 10, 2)))
+    assert high.statistic(0) == pytest.approx(np.log((norm.pdf(13, 6, 2) + broad) / 2 / norm.pdf(13, 10, 2)))
 
 
 def test_runs_leave_means_in_doubt():

@@ -8,8 +8,11 @@ runs of a pair, spread ρ of the tasks of a type):
 
 For outcomes the statistic is the log odds of a new type against the known types. A new type resembles a known
 type, but lies nearer the mean of all types (`ALIKE`), so that the policies which suit the known type best pay
-less; or it is as broad as all types together (`unknown_law`). For cells the statistic is (min_τ Σ_π χ²(τ, π) −
-d) / √(2d), over the d degrees of freedom of the policies that a task has tried.
+less; or it is as broad as all types together (`unknown_law`). Where only one type is known, the new type which
+resembles it pays less on all policies (`LESS`).
+
+For cells the statistic is (min_τ Σ_π χ²(τ, π) − d) / √(2d), over the d degrees of freedom of the policies that a
+task has tried.
 """
 
 from typing import Any
@@ -31,6 +34,9 @@ LARGEST = 1e6
 """Largest misfit of a pair, so that impossible signals leave the sums finite."""
 ALIKE = 0.9
 """Distance of a new type from the mean of all types, as a share of that of the known type which it is like."""
+LESS = 2.0
+"""Deviations by which a new type pays less than a single known type; more finds large differences by fewer
+signals, and small differences by more."""
 BREADTH = 1.0
 """Least variance of a broad type's means, in variances of an outcome: few types, or types that are alike, do not
 tell how far a new type may lie from them."""
@@ -87,9 +93,10 @@ class MeanPairs:
     def __init__(self, model: GaussianOutcomes, prior: Array) -> None:
         known, broad = model.moments, broad_moments(model.moments, prior)
         mean, doubt = means_of_types(model, prior)
-        alike = prior @ mean + ALIKE * (mean - prior @ mean)
+        # A single type has no mean of all types to be nearer to.
+        less = (1 - ALIKE) * (mean - prior @ mean) if len(prior) > 1 else LESS * np.sqrt(known.variance)
         # Policy first: a signal reads the row of a policy.
-        self._mean = np.concatenate([mean, alike, broad.mean]).T
+        self._mean = np.concatenate([mean, mean - less, broad.mean]).T
         self._variance = np.concatenate([known.variance, known.variance, broad.variance]).T
         self._doubt = np.concatenate([doubt, doubt, np.maximum(1 / broad.count, BREADTH)]).T
         self._log_prior = log_of(np.concatenate([prior, prior / 2, [0.5]]))
