@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.stats import multinomial, multivariate_normal, norm
+from scipy.stats import multinomial, norm
 
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -23,10 +23,10 @@ def test_outcomes_of_exact_types_are_a_likelihood_ratio():
     assert misfit.statistic(0) == 0
     for policy, outcome in ((0, 7.0), (0, 5.0), (1, 1.0)):
         misfit.observe(0, policy, outcome)
-    known = [multivariate_normal.pdf([6, 1], mean, np.diag([2, 4])) for mean in ([10, 0], [0, 10])]
+    known = [np.prod(norm.pdf([6, 1], mean, np.sqrt([2, 4]))) for mean in ([10, 0], [0, 10])]
     # The mean of the types is 5, so types like them pay 9.5 and 0.5; the broad type has 25 more variance.
-    alike = [multivariate_normal.pdf([6, 1], mean, np.diag([2, 4])) for mean in ([9.5, 0.5], [0.5, 9.5])]
-    broad = multivariate_normal.pdf([6, 1], [5, 5], np.diag([27, 29]))
+    alike = [np.prod(norm.pdf([6, 1], mean, np.sqrt([2, 4]))) for mean in ([9.5, 0.5], [0.5, 9.5])]
+    broad = np.prod(norm.pdf([6, 1], [5, 5], np.sqrt([27, 29])))
     expected = np.log((np.mean(alike) + broad) / 2) - np.log(np.mean(known))
     assert misfit.statistic(0) == pytest.approx(expected)
     assert (misfit.freedom[0], misfit.n_signals[0]) == (2, 3)
