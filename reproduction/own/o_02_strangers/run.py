@@ -42,7 +42,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     library = _library(world, types, cell["models"], generator)
     rule, horizon = BeliefSampling(), settings["horizon"]
     simulated = known_statistic(library, rule, horizon, settings["simulated"], generator, **AGENT)
-    calibration = NoveltyCalibration.of(simulated, settings["false_alarm"])
+    calibration = NoveltyCalibration.of(simulated, settings["false_alarm"], log_odds=True)
     near = world.cells_near_hills
     others = near[(near[:, None] != world.targets).any(axis=-1).all(axis=1)]
     means = {KNOWN: world.mean[types], HELD: world.mean[held], CELLS: world.mean_at(others)}

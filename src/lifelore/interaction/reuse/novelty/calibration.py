@@ -1,8 +1,9 @@
 """The threshold of a false-alarm rate, from simulated tasks of known types that the agent's rule plays.
 
-The statistic of known tasks is simulated over the horizon. Its mean and deviation after each signal standardise
-it, because errors of learnt models let it grow. A task raises an alarm where the standardised statistic exceeds
-the threshold after any signal. The threshold is a quantile of the largest value of each simulated task.
+The statistic of known tasks is simulated over the horizon. A task raises an alarm where it exceeds the threshold
+after any signal. The threshold is a quantile of the largest value of each simulated task. Before that, mean and
+deviation after each signal standardise a misfit of counts, because errors of learnt models let it grow; log odds
+have one scale.
 """
 
 from collections.abc import Mapping
@@ -51,7 +52,7 @@ class NoveltyCalibration:
     false_alarm : float
         Probability of an alarm within the horizon in a task of a known type, in (0, 1).
     mean, deviation : (horizon,) float64
-        Of the statistic after each signal.
+        Of the statistic after each signal; 0 and 1 for log odds.
     threshold : float
         Of the standardised statistic.
     n_tasks : int
@@ -65,8 +66,13 @@ class NoveltyCalibration:
     n_tasks: int
 
     @classmethod
-    def of(cls, statistic: Array, false_alarm: float) -> "NoveltyCalibration":
+    def of(cls, statistic: Array, false_alarm: float, log_odds: bool = False) -> "NoveltyCalibration":
         """The calibration from the statistic of known tasks, (n_tasks, horizon).
+
+        Parameters
+        ----------
+        log_odds : bool
+            Whether the statistic is log odds, see `misfit`, and not standardised.
 
         Raises
         ------
@@ -74,7 +80,9 @@ class NoveltyCalibration:
             The rate lies outside (0, 1), or the tasks are too few for it.
         """
         check_rate(false_alarm, len(statistic))
-        mean, deviation = statistic.mean(axis=0), np.maximum(statistic.std(axis=0), 1e-6)
+        mean, deviation = np.zeros(statistic.shape[1]), np.ones(statistic.shape[1])
+        if not log_odds:
+            mean, deviation = statistic.mean(axis=0), np.maximum(statistic.std(axis=0), 1e-6)
         largest = ((statistic - mean) / deviation).max(axis=1)
         threshold = float(np.quantile(largest, 1 - false_alarm, method="higher"))
         return cls(false_alarm, mean, deviation, threshold, len(statistic))
@@ -85,7 +93,7 @@ class NoveltyCalibration:
         return len(self.mean)
 
     def standardised(self, statistic: Array) -> Array:
-        """The statistic after each signal (n, horizon) in deviations from its mean on known tasks."""
+        """The statistic after each signal (n, horizon), as the threshold reads it."""
         return (statistic - self.mean) / self.deviation
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:

@@ -18,7 +18,7 @@ from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.normal_law import EXACT
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
-from lifelore.interaction.reuse.novelty.misfit import weight_of_runs
+from lifelore.interaction.reuse.novelty.misfit import means_of_types, weight_of_runs
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.return_signal import ReturnSignal
 
@@ -70,7 +70,7 @@ def known_tasks(library: PolicyLibrary, n: int, generator: np.random.Generator) 
     signal = library.signal
     model: Any = signal.outcomes if isinstance(signal, ReturnSignal) else None
     if isinstance(model, GaussianOutcomes):
-        return normal_tasks(*drawn_moments(model, types, generator), generator)
+        return normal_tasks(*drawn_moments(model, types, library.prior, generator), generator)
     if isinstance(model, CountedOutcomes):
         probs = drawn_probs(model, types, generator)
         return counted_tasks(probs, generator, partial(model.cells.sample, generator))
@@ -81,15 +81,16 @@ def known_tasks(library: PolicyLibrary, n: int, generator: np.random.Generator) 
     raise InputError(f"known tasks have outcomes or categories as signals, got {type(signal).__name__}")
 
 
-def drawn_moments(model: GaussianOutcomes, types: Numbers, generator: np.random.Generator) -> tuple[Array, Array]:
+def drawn_moments(
+    model: GaussianOutcomes, types: Numbers, prior: Array, generator: np.random.Generator
+) -> tuple[Array, Array]:
     """Mean and deviation of each policy on tasks of `types` (n,), drawn from their law, (n, n_policies) each."""
-    moments, spread = model.moments, float(model.spread.least.values[0])
-    variance, freedom = (array[types] for array in posterior_variance(moments))
+    mean, doubt = (array[types] for array in means_of_types(model, prior))
+    variance, freedom = (array[types] for array in posterior_variance(model.moments))
     freedom = np.minimum(freedom, EXACT)
     drawn = np.maximum(2 * generator.standard_gamma(0.5 * freedom), 1e-12)
     deviation = np.sqrt(variance * (freedom / drawn))
-    error = deviation * np.sqrt(1 / moments.count[types] + spread)
-    return moments.mean[types] + error * generator.standard_normal(error.shape), deviation
+    return mean + deviation * np.sqrt(doubt) * generator.standard_normal(mean.shape), deviation
 
 
 def posterior_variance(moments: OutcomeMoments) -> tuple[Array, Array]:

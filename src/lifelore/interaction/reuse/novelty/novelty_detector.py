@@ -1,13 +1,15 @@
 """A detector of tasks and users whose type the library does not have: a probability, and a calibrated alarm.
 
     probability   Bayes' rule from the prior `mass` and the log odds of `UnknownUsers`
-    alarm         the statistic of `Misfit` exceeds a threshold that simulated known tasks exceed at a stated rate
+    alarm         the statistic of `Misfit` exceeds a threshold that simulated known tasks exceed at a stated rate;
+                  it also looks for types that lie near the known types
 
 The thesis proposes the belief's spread (§5.2), which rises too little: a belief in a wrong type is as narrow as a
 belief in the right one.
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, Self
 
 import numpy as np
@@ -18,11 +20,12 @@ from lifelore.core.streams import stream
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.law import Models
 from lifelore.interaction.reuse.novelty.calibration import NoveltyCalibration, check_rate, known_statistic
-from lifelore.interaction.reuse.novelty.misfit import Misfit
+from lifelore.interaction.reuse.novelty.misfit import MeanPairs, Misfit, pairs_of
 from lifelore.interaction.reuse.novelty.unknown_evidence import unknown_evidence
 from lifelore.interaction.reuse.reuse_algorithm import Dynamics, named_part
 from lifelore.interaction.reuse.unknown_users import FIRST, MASS
 from lifelore.interaction.selection import SelectionRule, rule_of
+from lifelore.interaction.signals.return_signal import ReturnSignal
 
 
 class NoveltyDetector:
@@ -123,7 +126,8 @@ class NoveltyDetector:
         check_rate(false_alarm, n_tasks)
         generator = stream(seed, "novelty calibration")
         known = known_statistic(library, rule_of(rule, library), horizon, n_tasks, generator, **agent)
-        return cls(library, mass, **agent, calibration=NoveltyCalibration.of(known, false_alarm))
+        log_odds = isinstance(pairs_of(library.signal, library.prior), MeanPairs)
+        return cls(library, mass, **agent, calibration=NoveltyCalibration.of(known, false_alarm, log_odds))
 
     def restart(self) -> Self:
         """A detector for another task, with the same settings and calibration and without signals."""
@@ -184,7 +188,7 @@ class NoveltyDetector:
 
     @property
     def score(self) -> float:
-        """The statistic in deviations from known tasks, 0 before the first signal.
+        """The statistic: log odds of outcomes, else in deviations from known tasks; 0 before the first signal.
 
         Raises
         ------
@@ -205,8 +209,8 @@ class NoveltyDetector:
         """What the task has shown, as small arrays; policies that were not tried take no room.
 
         ``numbers`` (mass, log odds without a prior), ``log_belief`` and ``task.*`` of the known types, ``places``,
-        ``shown`` and ``log_odds`` of the broad type. With a calibration its arrays, ``misfit`` (signals,
-        shortfall, degrees of freedom, and the signal of the alarm or -1) and ``misfit_by_type``.
+        ``shown`` and ``log_odds`` of the broad type. With a calibration its arrays, ``misfit`` (signals, degrees
+        of freedom, and the signal of the alarm or -1) and ``misfit_by_type``.
         """
         task = self._rows.state(0)
         state = {f"task.{name}": array for name, array in task.items() if not name.startswith("unknown.")} | {
@@ -219,7 +223,7 @@ class NoveltyDetector:
         if self.calibration is None:
             return state
         misfit, alarm = self._misfit, -1 if self.alarm_episode is None else self.alarm_episode
-        sums = [misfit.n_signals[0], misfit.shortfall[0], misfit.freedom[0], alarm]
+        sums = [misfit.n_signals[0], misfit.freedom[0], alarm]
         watched = {"misfit": np.array(sums, np.float64), "misfit_by_type": misfit.by_type[0].copy()}
         return state | watched | self.calibration.to_arrays()
 
@@ -234,6 +238,10 @@ class NoveltyDetector:
         """The detector of a `state`, bit for bit; InputError where it is not of this library."""
         # Sessions of earlier versions have no calibration: they computed the probability alone.
         known = NoveltyCalibration.from_arrays(state) if "calibration" in state else None
+        # Earlier calibrations of outcomes are for another statistic: their alarm stays, and no other is raised.
+        outdated = np.size(state.get("misfit", ())) == 4 and isinstance(library.signal, ReturnSignal)
+        if known is not None and outdated:
+            known = replace(known, threshold=np.inf)
         try:
             mass, log_odds = np.asarray(state["numbers"], np.float64).tolist()
             detector = cls(library, mass, None, dynamics, models, known)
@@ -248,8 +256,8 @@ class NoveltyDetector:
             detector._rows.restore(0, state["log_belief"], named_part(state, "task.") | unknown)
             if known is not None:
                 misfit = detector._misfit
-                misfit.n_signals[0], misfit.shortfall[0], misfit.freedom[0], alarm = state["misfit"].tolist()
-                misfit.by_type[0] = state["misfit_by_type"]
+                misfit.n_signals[0], *_, misfit.freedom[0], alarm = state["misfit"].tolist()
+                misfit.by_type[0] = 0 if outdated else state["misfit_by_type"]
                 detector.alarm_episode = None if alarm < 0 else int(alarm)
         except (KeyError, ValueError, TypeError) as error:
             raise InputError(f"this is no evidence of an unknown type of this library: {error}") from None
