@@ -8,6 +8,7 @@ The thesis proposes the belief's spread (§5.2), which rises too little: a belie
 belief in the right one.
 """
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, Self
@@ -26,6 +27,8 @@ from lifelore.interaction.reuse.reuse_algorithm import Dynamics, named_part
 from lifelore.interaction.reuse.unknown_users import FIRST, MASS
 from lifelore.interaction.selection import SelectionRule, rule_of
 from lifelore.interaction.signals.return_signal import ReturnSignal
+
+OUTDATED = "an earlier version calibrated this alarm; it raises no more until it is calibrated again"
 
 
 class NoveltyDetector:
@@ -235,10 +238,14 @@ class NoveltyDetector:
         dynamics: Dynamics | None = None,
         models: Models = "uncertain",
     ) -> Self:
-        """The detector of a `state`, bit for bit; InputError where it is not of this library."""
+        """The detector of a `state`, bit for bit; InputError where it is not of this library.
+
+        An alarm of outcomes that an earlier version calibrated stays where it was raised; else it is never raised,
+        with a warning.
+        """
         # Sessions of earlier versions have no calibration: they computed the probability alone.
         known = NoveltyCalibration.from_arrays(state) if "calibration" in state else None
-        # Earlier calibrations of outcomes are for another statistic: their alarm stays, and no other is raised.
+        # Earlier calibrations of outcomes are for another statistic.
         outdated = np.size(state.get("misfit", ())) == 4 and isinstance(library.signal, ReturnSignal)
         if known is not None and outdated:
             known = replace(known, threshold=np.inf)
@@ -263,4 +270,6 @@ class NoveltyDetector:
             raise InputError(f"this is no evidence of an unknown type of this library: {error}") from None
         if not np.isfinite([log_odds, detector._misfit.statistic(0)]).all():
             raise InputError("the evidence of an unknown type must be finite")
+        if known is not None and known.threshold == np.inf and not detector.alarm:
+            warnings.warn(OUTDATED, stacklevel=2)
         return detector
