@@ -70,8 +70,8 @@ def walk() -> dict:
     maze = mazes.maze_of(settings, {"loops": settings["loops"][0], "maze": MAZE}, seed=0)
     models = mazes.goal_models_of(maze, **mazes.choices_of(settings)[0])
     found = mazes.errands_of(maze, settings["tasks"])[ERRAND]
-    policy = mazes.policy_of(maze.world, "bug", found)
-    done = mazes.walk(maze, found, policy, mazes.thesis_advisor(models), ERRAND, settings["max_steps"])
+    policies = mazes.policies_of(settings, maze, "bug")
+    done = mazes.walks_of(settings, maze, policies, mazes.thesis_advisor(models))[ERRAND]
     shown = int(np.flatnonzero(done.advised)[0])
     world = maze.world
     return {

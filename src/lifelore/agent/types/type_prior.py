@@ -51,8 +51,8 @@ class TypePrior:
     >>> for date in range(20):
     ...     prior.learn(context=7, belief=[0.9, 0.1], date=date)
     ...     prior.learn(context=8, belief=[0.0, 1.0], date=date)
-    >>> prior.prior(7, date=20).round(1).tolist(), prior.prior(8, date=20).round(1).tolist()
-    ([0.8, 0.2], [0.1, 0.9])
+    >>> prior.prior(7, date=20).round(2).tolist(), prior.prior(8, date=20).round(2).tolist()
+    ([0.88, 0.12], [0.02, 0.98])
     """
 
     def __init__(self, library_prior: ArrayLike, half_lives: Sequence[float] = HALF_LIVES) -> None:
