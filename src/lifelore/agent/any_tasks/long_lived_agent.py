@@ -218,7 +218,7 @@ class LongLivedAgent(AbstractContextManager):
     def experience_for(self, n_actions: int) -> Experience:
         """What is known for environments of so many actions; InputError if the tasks before had others.
 
-        Returns as signals are refused where moves have told types apart: a task without moves would join them.
+        Types that moves told apart cannot be used with returns as signals: a task without moves would join them.
         """
         self._recall()
         if self._experience is None:

@@ -69,13 +69,16 @@ class TypePrior:
     @classmethod
     def of_types(cls, types: Sequence[Iterable[Mapping[tuple[int, int], float]]]) -> Self:
         """The prior over types, with a uniform G₀, from the belief in their members by date and context."""
-        # Without types, of one that was never seen.
-        own = np.eye(max(len(types), 1))
-        made = cls(own.mean(axis=0))
-        for row, members in zip(own, types, strict=False):
+        n_types = max(len(types), 1)  # without types, of one that was never seen
+        made = cls(np.full(n_types, 1 / n_types))
+        for type_, members in enumerate(types):
             for seen in members:
                 for (date, context), belief in seen.items():
-                    made.learn(context, belief * row, date)
+                    counts = made.dates.setdefault(date, {})
+                    if context not in counts:
+                        counts[context] = np.zeros(n_types)
+                    counts[context][type_] += belief
+        made._forget_past()
         return made
 
     @property
